@@ -163,6 +163,11 @@ def score(args: argparse.Namespace) -> dict:
     return append_row(LEDGER, args.batch, commit, summarize(judged, trees))
 
 
+def read_batches(ledger: Path) -> list[dict]:
+    """The rows of the ledger that are about breaks; others have figures of their own, see field_sight.py."""
+    return [row for row in read_records(ledger) if "breaks" in row]
+
+
 def format_table(rows: list[dict]) -> str:
     """The rows of the ledger about breaks as a table of Markdown; others are about other questions."""
     lines = [
@@ -265,9 +270,9 @@ def main(given: list[str] | None = None) -> None:
     elif args.command == "score":
         print(format_table([score(args)]))
     elif args.command == "show":
-        print(format_table(read_records(LEDGER)))
+        print(format_table(read_batches(LEDGER)))
     else:
-        plot(read_records(LEDGER), args.file)
+        plot(read_batches(LEDGER), args.file)
 
 
 if __name__ == "__main__":

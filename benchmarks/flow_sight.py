@@ -77,11 +77,19 @@ def list_sites(path: str, data: bytes) -> Iterator[tuple[str, int]]:
                 yield from ((role, number) for role, pattern in _IN_PYTHON.items() if pattern.search(code))
 
 
-def read_graph(folder: Path, commit: str) -> dict:
-    """The graph of a commit, as `graph --format json` gives it."""
-    command = [sys.executable, "-m", "rosimpact.impact.cli", "graph", str(folder), "--rev", commit, "-q"]
+class GraphFailed(Exception):
+    """`graph` printed no graph; the message names the system, the exit status and what `graph` said."""
+
+
+def read_graph(clone: mining.Clone, commit: str) -> dict:
+    """The graph of a commit, as `graph --format json` gives it. Raises GraphFailed where it gives none."""
+    command = [sys.executable, "-m", "rosimpact.impact.cli", "graph", str(clone.folder), "--rev", commit, "-q"]
     done = subprocess.run([*command, "--format", "json", "--all"], capture_output=True, text=True, check=False)
-    return json.loads(done.stdout)
+    try:
+        return json.loads(done.stdout)
+    except json.JSONDecodeError:
+        last = "\n".join(done.stderr.strip().splitlines()[-5:]) or "nothing on standard error"
+        raise GraphFailed(f"{clone.name} at {commit}: graph failed (exit status {done.returncode}): {last}") from None
 
 
 def is_certain(endpoint: dict, names: dict[str, str]) -> bool:
@@ -90,10 +98,18 @@ def is_certain(endpoint: dict, names: dict[str, str]) -> bool:
     return endpoint.get("how") in CERTAIN and bool(names.get(endpoint["node"])) and not endpoint.get("only_if")
 
 
+def find_clone(clones: Path, repo: str) -> mining.Clone:
+    """The clone of a system. Raises GraphFailed where there is none."""
+    found = mining.find_clones(clones, [repo])
+    if not found:
+        raise GraphFailed(f"{repo}: no clone in {clones}")
+    return found[0]
+
+
 def draw(clone: mining.Clone, commit: str, number: int, seed: int) -> Iterator[dict]:
     """Records of a system: as many endpoints and sites, each chosen at random."""
     chance = random.Random(f"{seed} {clone.name} {commit}")
-    found, tree = read_graph(clone.folder, commit), open_tree(clone.folder, commit)
+    found, tree = read_graph(clone, commit), open_tree(clone.folder, commit)
     about = {"repo": clone.name, "commit": commit}
     names = {node["id"]: node["name"] for node in found["nodes"]}
     endpoints = [
@@ -120,13 +136,18 @@ def draw(clone: mining.Clone, commit: str, number: int, seed: int) -> Iterator[d
                "found": not near.isdisjoint(have[role]), "named": not near.isdisjoint(named)}  # fmt: skip
 
 
-def recheck(clones: Path, systems: list[dict], records: list[dict]) -> None:
+def recheck(clones: Path, systems: list[dict], records: list[dict]) -> int:
     """Prints how many of the judged endpoints the graph of today has, by verdict, and names the right ones it lost and
-    the wrong ones it kept."""
+    the wrong ones it kept. Returns of how many systems there is no graph, or no clone; these are named too."""
     kept: dict[str, Counter[bool]] = defaultdict(Counter)
+    failures = 0
     for system in systems:
-        (clone,) = mining.find_clones(clones, [system["repo"]])
-        found = read_graph(clone.folder, system["commit"])
+        try:
+            found = read_graph(find_clone(clones, system["repo"]), system["commit"])
+        except GraphFailed as error:
+            print(error, file=sys.stderr)
+            failures += 1
+            continue
         names = {node["id"]: node["name"] for node in found["nodes"]}
         have = {
             (role, one["path"], one["line"], names.get(one["node"], one["node"]), one.get("topic"), type_)
@@ -142,6 +163,7 @@ def recheck(clones: Path, systems: list[dict], records: list[dict]) -> None:
                     print(f"{one['repo']}: {one['verdict']}, {'still' if key in have else 'no longer'} there: {said}")
     for verdict, count in kept.items():
         print(f"{verdict}: {count[True]} of {sum(count.values())} still stated as certain")
+    return failures
 
 
 def score(records: list[dict]) -> None:
@@ -176,14 +198,20 @@ def main() -> None:
         return
     systems = [json.loads(line) for line in (SETS / f"{options.set}.systems.jsonl").read_text().splitlines()]
     if options.command == "recheck":
-        recheck(options.clones, systems, [json.loads(line) for line in drawn.read_text().splitlines()])
-        return
+        sys.exit(recheck(options.clones, systems, [json.loads(line) for line in drawn.read_text().splitlines()]) > 0)
+    failures = 0
     with drawn.open("w") as out:
         for system in systems:
-            (clone,) = mining.find_clones(options.clones, [system["repo"]])
-            for record in draw(clone, system["commit"], options.number, options.seed):
-                out.write(json.dumps(record) + "\n")
+            try:
+                clone = find_clone(options.clones, system["repo"])
+                records = list(draw(clone, system["commit"], options.number, options.seed))
+            except GraphFailed as error:
+                print(error, file=sys.stderr)
+                failures += 1
+                continue
+            out.writelines(json.dumps(record) + "\n" for record in records)
             print(system["repo"], flush=True)
+    sys.exit(failures > 0)
 
 
 if __name__ == "__main__":

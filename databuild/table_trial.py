@@ -14,6 +14,7 @@ def read_tables() -> int:
     from ..impact.targets import changes, parameters
     from ..impact.targets.distro.distro import DistroTarget
     from ..impact.targets.distro.known import list_known_distros
+    from ..impact.targets.gazebo_topics import load_gazebo_topics
     from ..impact.targets.gz_systems import load_gz_systems
     from ..impact.targets.machine.sonames import load_sonames
     from ..impact.targets.providers.apt import load_apt
@@ -26,6 +27,7 @@ def read_tables() -> int:
     from ..impact.targets.providers.version_macros import make_version_test
     from ..impact.targets.surface.fields import load_fields
     from ..impact.targets.surface.store import load_shipped
+    from ..impact.targets.tree_nodes import load_tree_nodes
 
     target = DistroTarget(list_known_distros()[-1].name, platform="conda-forge")
     target.find_library("eigen")
@@ -50,7 +52,8 @@ def read_tables() -> int:
         changes.load_uses(kind)
     for load in (
         *(changes.load_rows, changes.load_transitive, parameters.load_renamed_parameters, load_sonames, load_offered),
-        *(index_headers, load_gz_systems, lambda: load_apt("ubuntu jammy"), lambda: load_shipped().about),
+        *(index_headers, load_gazebo_topics, load_gz_systems, load_tree_nodes),
+        *(lambda: load_apt("ubuntu jammy"), lambda: load_shipped().about),
     ):
         load()
     return 0

@@ -69,6 +69,7 @@ EXTRACTORS = [
     ("impact.facts.cmake", {"cmake"}),
     ("impact.facts.launch.python_calls", {"flow_launch_xml", "flow_launch_yaml", "flow_launch_python"}),
     ("impact.facts.nodl", {"flow_nodl"}),
+    ("impact.facts.reconfigure", {"flow_reconfigure"}),
     ("databuild.extract.cpp_enums", {cpp.__name__}),
     ("databuild.extract.python", {python.__name__}),
     ("databuild.extract.parameters", PARAMETERS),

@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import posixpath
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -31,7 +31,7 @@ from .headers import keep_compiled_includes
 if TYPE_CHECKING:
     from ...impact.facts.extract import ExtractedFacts
     from ...impact.facts.store import Store
-    from ...impact.model.workspace import Package
+    from ...impact.model.workspace import Package, Workspace
     from ...impact.tree import Tree
 
 
@@ -42,11 +42,8 @@ def build_surfaces(tree: Tree, store: Store, jobs: int | None = None) -> dict[st
     """The surfaces of all packages of a tree, by name. What is equal in two trees is worked out once: facts by the
     content of their file, surfaces by all that they are made from. jobs: processes to parse with. Raises TreeError."""
     from ...impact.facts.extract import extract_all
-    from ...impact.model.package import Watched
-    from ...impact.model.workspace import link
 
-    extraction = extract_all(tree, store, jobs=jobs, kind_of=_find_build_kind)
-    workspace = link(tree, extraction, store, None, Watched(), jobs)
+    workspace = link_build(tree, store, jobs)
     builds = {package.name: surface_build.build_surface(workspace, package) for package in workspace}
     wanted: dict[str, str] = {}
     headers: dict[str, dict[str, str]] = {}
@@ -86,6 +83,16 @@ def build_surfaces(tree: Tree, store: Store, jobs: int | None = None) -> dict[st
             *_merge_parameters(declared, declaring[name]),
         )
     return surfaces
+
+
+def link_build(tree: Tree, store: Store, jobs: int | None = None) -> Workspace:
+    """The packages of a tree with what their builds tell alone. Raises TreeError."""
+    from ...impact.facts.extract import extract_all
+    from ...impact.model.package import Watched
+    from ...impact.model.workspace import link
+
+    extraction = extract_all(tree, store, jobs=jobs, kind_of=_find_build_kind)
+    return link(tree, extraction, store, None, Watched(), jobs)
 
 
 _WITH = frozenset(("exec", "build_export"))
@@ -130,16 +137,8 @@ def _add_tree_nodes(
 ) -> BuildSurface:
     """A build with the nodes of behaviour trees that its installed libraries register, as plugins of their own kind.
     files: those that may register some."""
-    installs = (one for one in package.build.installs if one.kind == "targets" and one.destination[:5] != "share")
-    libraries = {name for install in installs for name in install.items}
-    compiled = {
-        path
-        for target in package.build.targets
-        if target.kind in ("library", "module") and target.name in libraries
-        for path in target.sources
-    }
     found: dict[str, Plugin] = {}
-    for path in sorted(compiled.intersection(files)):
+    for path in sorted(list_compiled(package).intersection(files)):
         facts = declared.get_facts(path) if path in declared.kinds else None
         for node in facts.facts.tree_nodes if facts is not None and facts.facts is not None else ():
             holds = evaluate_all(node.conditions, _NOTHING_KNOWN)
@@ -147,6 +146,14 @@ def _add_tree_nodes(
                 found[node.name] = Plugin(node.name, node.type, TREE_NODE, bool(holds))
     nodes = (found[name] for name in sorted(found))
     return msgspec.structs.replace(build, plugins=(*build.plugins, *nodes)) if found else build
+
+
+def list_compiled(package: Package, kinds: Collection[str] = ("library", "module")) -> frozenset[str]:
+    """What the targets of some kinds are compiled from that a package installs."""
+    installs = (one for one in package.build.installs if one.kind == "targets" and one.destination[:5] != "share")
+    installed = {name for install in installs for name in install.items}
+    targets = (one for one in package.build.targets if one.kind in kinds and one.name in installed)
+    return frozenset(path for target in targets for path in target.sources)
 
 
 def build_tree_surfaces(tree: Tree, store: Store, folder: str = "", jobs: int | None = None) -> dict[str, Surface]:

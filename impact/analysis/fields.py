@@ -8,32 +8,46 @@ from typing import NamedTuple
 
 import msgspec
 
+from ..facts.interface import Section, extract
 from ..facts.store import Store
 from ..model.fields.report import FieldReport, TopicFields
 from ..model.fields.topics import report_fields
 from ..model.flow.workspace import link_for_flow, make_graph
+from ..model.wire import Encoding, LayoutError, WireField, build_layout, compute_size
+from ..model.workspace import Workspace
+from ..tree import Tree
+from .message_files import ReleasedMessages
 from .session import CheckError, load_settings, open_tree
 
 
+class TopicSize(NamedTuple):
+    """Bytes of a message on the wire, and of the fields in it that nobody reads."""
+
+    full: int
+    unread: int
+
+
 class FieldAnswer(NamedTuple):
-    """The report, and how many topics there are of which it is a choice."""
+    """The report, and the sizes of messages by topic and type, of those whose definitions are known."""
 
     report: FieldReport
-    topics: int
+    sizes: dict[tuple[str, str], TopicSize]
 
 
 def collect_fields(
     path: Path, *, topics: Sequence[str] = (), closed: Sequence[str] = (), rev: str = "", config: Path | None = None,
-    jobs: int | None = None, progress: Callable[[int, int], None] | None = None, follow_links: bool = False,
+    length: int = 10, jobs: int | None = None, progress: Callable[[int, int], None] | None = None,
+    follow_links: bool = False,
 ) -> FieldAnswer:  # fmt: skip
     """The fields of the topics of the workspace at a path. topics: these alone, by name; closed: topics that nobody
-    else subscribes to, as the user knows, besides those of rosimpact.toml. The others as for check. Raises CheckError,
-    ConfigError and TreeError with a text for the user."""
+    else subscribes to, as the user knows, besides those of rosimpact.toml. length: of strings and arrays, for sizes.
+    The others as for check. Raises CheckError, ConfigError and TreeError with a text for the user."""
     tree = open_tree(path, rev, follow_links=follow_links)
     settings = load_settings(path, tree, config, follow_links=follow_links)
     with Store() as store:
         workspace = link_for_flow(tree, store, jobs, progress)
         found = report_fields(workspace, make_graph(workspace, store, jobs=jobs or 1), store, jobs)
+        definitions = KnownMessages(workspace, tree)
     names = {one.topic for one in found.topics} | {topic for topic, _ in found.unknown}
     for option, asked in (("--topic", topics), ("--assume-closed", closed)):
         for name in asked:
@@ -43,7 +57,58 @@ def collect_fields(
     known = frozenset((*closed, *settings.closed_topics))
     chosen = [close(one) if one.topic in known else one for one in found.topics if not topics or one.topic in topics]
     unknown = tuple(row for row in found.unknown if not topics or row[0] in topics)
-    return FieldAnswer(FieldReport(tuple(chosen), unknown), len(names))
+    sizes = {(one.topic, one.type): size for one in chosen if (size := definitions.measure(one, length)) is not None}
+    return FieldAnswer(FieldReport(tuple(chosen), unknown), sizes)
+
+
+class KnownMessages:
+    """The messages of a workspace and of released packages, as text."""
+
+    def __init__(self, workspace: Workspace, tree: Tree):
+        self._workspace, self._tree = workspace, tree
+        self._released = ReleasedMessages(workspace.ros)
+        self._sections: dict[str, Section | None] = {}
+
+    def find(self, type_: str) -> bytes | None:
+        """The text of the message `package/Name`, None where it is not known."""
+        package, _, name = type_.partition("/")
+        found = self._workspace.packages.get(package)
+        if found is None:
+            return self._released.find(type_)
+        rows = (one.path for one in found.linked.interfaces if one.name == name and one.path.endswith(".msg"))
+        path = next(rows, "")
+        try:
+            return self._tree.read(path) if path else None
+        except OSError:
+            return None
+
+    def find_section(self, type_: str) -> Section | None:
+        """The fields of the message `package/Name`, None where they are not known."""
+        if type_ not in self._sections:
+            data = self.find(type_)
+            facts = extract(data, "msg") if data is not None else None
+            self._sections[type_] = facts.sections[0] if facts is not None and facts.sections else None
+        return self._sections[type_]
+
+    def measure(self, topic: TopicFields, length: int) -> TopicSize | None:
+        """The size of a topic's messages with strings and arrays of a length, None where that is not known."""
+        encoding: Encoding = "ros1" if self._workspace.ros == 1 else "cdr"
+        try:
+            layout = build_layout(self.find_section, topic.type, encoding)
+        except LayoutError:
+            return None
+        full = compute_size(layout, {}, encoding, length)
+        return TopicSize(full, full - compute_size(_drop(layout, frozenset(topic.unread)), {}, encoding, length))
+
+
+def _drop(fields: tuple[WireField, ...], unread: frozenset[str]) -> tuple[WireField, ...]:
+    """A layout without some fields; an array of messages goes with its last one."""
+    kept: list[WireField] = []
+    for field in fields:
+        members = _drop(field.members, unread)
+        if field.path not in unread and (members or not field.members):
+            kept.append(field._replace(members=members))
+    return tuple(kept)
 
 
 def close(topic: TopicFields) -> TopicFields:

@@ -48,6 +48,7 @@ app.add_typer(corpus_app, name="corpus")
 set_suggester(suggest_label)
 app.add_typer(classifier_app, name="classifier")
 app.command()(triage)
+measure_app = _group("measure", "Experiments on running nodes: what messages cost on a link.")
 study_app = _group("study", "The study: its notebooks, run anew.")
 app.add_typer(dev_app, name="dev", hidden=True)
 
@@ -333,6 +334,7 @@ def fields(
     assume_closed: list[str] = _make_option(
         "Nobody outside of this workspace subscribes to this topic. May be repeated.", "--assume-closed"
     ),
+    length: int = _make_option("Elements of strings and arrays, for the sizes that are shown.", default=10, min=0),
     rev: _Revision = "",
     config: _Config = None,
     follow_links: _FollowLinks = False,
@@ -356,6 +358,17 @@ def prune(
     apply: bool = _make_option("Write the changes to the workspace.", "--apply", default=False),
     out: Path | None = _make_option("Write a changed copy of the workspace to this folder."),
     undo: bool = _make_option("Take back what --apply wrote.", "--undo", default=False),
+    verify: bool = _make_option(
+        "Build the workspace as it is and pruned, and with --run compare what both do (ROS 1 with catkin).",
+        "--verify",
+        default=False,
+    ),
+    run: list[str] = _make_option(
+        "With --verify: start this, 'PACKAGE/PROGRAM ARGUMENTS' or a command of the shell such as 'rosbag play a.bag' "
+        "or 'roslaunch a.launch'. May be repeated."
+    ),
+    seconds: float = _make_option("With --verify: how long both run.", default=10.0, min=1.0),
+    keep_builds: Path | None = _make_option("With --verify: a folder for both versions.", "--keep-builds"),
     length: int = _make_option("Elements of strings and arrays, for the sizes that are shown.", default=10, min=0),
     config: _Config = None,
     follow_links: _FollowLinks = False,
@@ -367,7 +380,7 @@ def prune(
 ) -> None:
     """Give topics lighter messages, without the fields that nobody reads: show the plan, or write it.
 
-    Exit status: 0 done, 2 the tool failed.
+    Exit status: 0 done, 1 with --verify where both versions differ, 2 the tool failed.
     """
 
 
@@ -509,6 +522,120 @@ def data_update(
 
     Exit status: 0 updated, 2 not updated; the data in use stay.
     """
+
+
+_Publishers = Annotated[list[str], typer.Option(help="Numbers of publishers of one topic [default: 1,5].")]
+_Fields = Annotated[list[str], typer.Option(help="Numbers of fields of the whole message [default: 25,50,100].")]
+_Rates = Annotated[list[str], typer.Option(help="Messages per second of each publisher [default: 50,100,200].")]
+_FieldBytes = Annotated[int, typer.Option(help="Characters in each field.")]
+_Keep = Annotated[
+    str,
+    typer.Option(
+        help="What the pruned message keeps: a number of fields, 0 for no pruned message [default: 5]; with --message, "
+        "names of fields, such as header,pose.position."
+    ),
+]
+_Queue = Annotated[int, typer.Option(help="Length of the queues of publishers and subscriber.")]
+_Seconds = Annotated[float, typer.Option(help="Measured seconds of each run of a cell.")]
+_WarmUp = Annotated[float, typer.Option("--warm-up", help="Seconds before them that are not counted.")]
+_Repeat = Annotated[int, typer.Option(help="Repetitions of all cells; intervals are over them.")]
+_CallbackMs = Annotated[float, typer.Option("--callback-ms", help="How long each callback of the subscriber takes.")]
+_Message = Annotated[str, typer.Option(help="Measure this message (package/Type) of the workspace or a release.")]
+_Length = Annotated[
+    list[str],
+    typer.Option(help="With --message: the length of an array or text, FIELD=NUMBER. May be repeated."),
+]
+_Bag = Annotated[Path | None, typer.Option(help="With --message: send the messages of this bag.")]
+_Results = Annotated[
+    Path, typer.Option("--output", "-o", help="Results, JSON Lines; what is in it already is not measured again.")
+]
+_Parquet = Annotated[Path | None, typer.Option(help="Also write the results to this Parquet file.")]
+_CellsFormat = Annotated[str, typer.Option("--format", "-f", help="How cells are printed: text or json.")]
+
+
+@_add_command(measure_app, "network")
+def measure_network(
+    path: _Workspace = Path("."),
+    publishers: _Publishers = [],  # noqa: B006
+    fields: _Fields = [],  # noqa: B006
+    rates: _Rates = [],  # noqa: B006
+    field_bytes: _FieldBytes = 1000,
+    keep: _Keep = "",
+    link: str = _make_option("Rate of each link, such as 54mbit, or none [default: 100mbit].", default=""),
+    queue: _Queue = 10,
+    seconds: _Seconds = 10,
+    warm_up: _WarmUp = 1,
+    repeat: _Repeat = 3,
+    nodes: str = _make_option("Nodes to run: roscpp, rospy, dds (ROS 2's Cyclone DDS, in Python).", default="roscpp"),
+    callback_ms: _CallbackMs = 0,
+    loopback: bool = _make_option("No namespaces and no link: needs no root.", "--loopback", default=False),
+    message: _Message = "",
+    length: _Length = [],  # noqa: B006
+    bag: _Bag = None,
+    output: _Results = Path("network.jsonl"),
+    parquet: _Parquet = None,
+    format: _CellsFormat = "text",
+    quiet: _Quiet = False,
+) -> None:
+    """Measure latency and dropped messages over size and rate, whole and pruned, between real nodes on one machine.
+
+    Publisher, router and subscriber are three network namespaces (root); --loopback needs none. A stopped run continues
+    the next time. Exit status: 0 measured, 2 the tool failed, 130 interrupted.
+    """
+
+
+@_add_command(measure_app, "publisher")
+def measure_publisher(
+    path: _Workspace = Path("."),
+    nodes: str = _make_option("Nodes to run: roscpp or rospy.", default="roscpp"),
+    master: str = _make_option("ROS master; default: one that is started here.", default=""),
+    address: str = _make_option("Address of this machine, as the other one sees it.", default=""),
+    port: int = _make_option("Port of the master that is started here.", default=11311, min=1, max=65535),
+    message: _Message = "",
+    keep: _Keep = "",
+    length: _Length = [],  # noqa: B006
+    bag: _Bag = None,
+    quiet: _Quiet = False,
+) -> None:
+    """Serve publishers to `measure subscriber` on another machine, until Ctrl-C.
+
+    Whoever reaches this machine can have it publish: use it in a network that you trust.
+    """
+
+
+@_add_command(measure_app, "subscriber")
+def measure_subscriber(
+    path: _Workspace = Path("."),
+    master: str = _make_option("ROS master that `measure publisher` names.", default=...),
+    publishers: _Publishers = [],  # noqa: B006
+    fields: _Fields = [],  # noqa: B006
+    rates: _Rates = [],  # noqa: B006
+    field_bytes: _FieldBytes = 1000,
+    keep: _Keep = "",
+    queue: _Queue = 10,
+    seconds: _Seconds = 10,
+    warm_up: _WarmUp = 1,
+    repeat: _Repeat = 3,
+    nodes: str = _make_option("Nodes to run: roscpp or rospy.", default="roscpp"),
+    callback_ms: _CallbackMs = 0,
+    address: str = _make_option("Address of this machine, as the other one sees it.", default=""),
+    message: _Message = "",
+    length: _Length = [],  # noqa: B006
+    bag: _Bag = None,
+    output: _Results = Path("network.jsonl"),
+    parquet: _Parquet = None,
+    format: _CellsFormat = "text",
+    quiet: _Quiet = False,
+) -> None:
+    """Measure as `measure network` does, with publishers on another machine."""
+
+
+@_add_command(measure_app, "show")
+def measure_show(
+    results: Path = _make_argument("A file of results.", default=...),
+    format: _CellsFormat = "text",
+) -> None:
+    """Print the cells of a file of results."""
 
 
 @_add_command(study_app, "run")

@@ -47,6 +47,8 @@ _READ_BY: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("launch.flow", "LaunchFile", ("flow_launch_xml", "flow_launch_yaml", "flow_launch_python")),
     ("launch.parameter_files", "ParameterFile", ("flow_parameters",)),
     ("nodl", "NodlFile", ("flow_nodl",)),
+    ("gazebo", "GazeboFile", ("flow_gazebo",)),
+    ("reconfigure", "ReconfigureFile", ("flow_reconfigure",)),
     ("colcon", "ColconFile",
      ("colcon_cmake", "colcon_setup_py", "colcon_setup_cfg", "colcon_pyproject", "colcon_settings")),
     ("distros", "ContainerFile", ("dockerfile", "ci")),

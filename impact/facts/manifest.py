@@ -26,20 +26,24 @@ class Dependency(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class Export(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """One element of <export>: tag, attributes, text, condition."""
+    """One element of <export>: tag, attributes, text. line: of its tag; column: of its text where that stands in this
+    line, else of the tag. places: lines and columns of the attributes' values."""
 
     tag: str
     attributes: dict[str, str]
     text: str
     line: int
+    column: int = 0
+    places: dict[str, tuple[int, int]] = {}
 
 
 class Manifest(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A package.xml. `build_types` holds (type, condition) pairs as in the export section; none means catkin.
 
     problems: why catkin_pkg, and with it every build tool, refuses the file. warnings: what it accepts but advises
-    against. unknown_tags: (tag, text, line) of children of <package> that the format does not know; each is a problem
-    too. member_of_group and group_depend are dependencies of the kinds `member_of_group` and `group`.
+    against. unknown_tags: (tag, text, line, column) of children of <package> that the format does not know; each is a
+    problem too. member_of_group and group_depend are dependencies of the kinds `member_of_group` and `group`. line,
+    column: of the name.
     """
 
     name: str
@@ -52,8 +56,9 @@ class Manifest(msgspec.Struct, frozen=True, array_like=True, gc=False):
     metapackage: bool = False
     deprecated: bool = False
     problems: tuple[Problem, ...] = ()
-    unknown_tags: tuple[tuple[str, str, int], ...] = ()
+    unknown_tags: tuple[tuple[str, str, int, int], ...] = ()
     warnings: tuple[Problem, ...] = ()
+    column: int = 0
 
 
 # What a tag means, by REP 127 (format 1), REP 140 (format 2) and REP 149 (format 3).
@@ -112,7 +117,7 @@ def extract(data: bytes) -> Manifest:
     name = _find_first(children, "name")
     version = _find_first(children, "version")
     dependencies: list[Dependency] = []
-    unknown: list[tuple[str, str, int]] = []
+    unknown: list[tuple[str, str, int, int]] = []
     found: list[Problem] = []
     empty: list[Problem] = []
     for child in children:
@@ -121,15 +126,15 @@ def extract(data: bytes) -> Manifest:
         if kinds is None:
             if tag in TEXT_TAGS:
                 continue
-            line = document.locate(child.offset)[0]
-            unknown.append((tag, child.text, line))
-            found.append(Problem(line, _describe_unknown_tag(tag, format_, tags)))
+            line, column = document.locate(child.offset + 1)
+            unknown.append((tag, child.text, line, column))
+            found.append(Problem(line, _describe_unknown_tag(tag, format_, tags), column))
             kinds = ANY_FORMAT.get(tag.replace("-", "_").lower())
             if kinds is None:
                 continue
         line, column = document.locate(child.text_offset)
         if not child.text:
-            empty.append(Problem(line, f"`<{tag}>` names nothing"))
+            empty.append(Problem(line, f"`<{tag}>` names nothing", column))
             continue
         bounds: tuple[tuple[str, str], ...] = ()
         condition = ""
@@ -141,9 +146,7 @@ def extract(data: bytes) -> Manifest:
         for kind in kinds:
             dependencies.append(Dependency(child.text, kind, tag, line, column, condition, bounds))
 
-    exports = tuple(
-        Export(e.name, {a.name: a.value for a in e.attributes}, e.text, document.locate(e.offset)[0]) for e in exported
-    )
+    exports = tuple(_make_export(document, element) for element in exported)
     warnings: tuple[Problem, ...] = ()
     if document.problems:
         problems = document.problems + tuple(found)
@@ -151,13 +154,12 @@ def extract(data: bytes) -> Manifest:
         problems = ()
     else:
         problems, warnings = _validate_manifest(data, document, children, found)
+    line, column = document.locate(name.text_offset if name is not None else document.elements[root].offset)
     return Manifest(
         name.text if name is not None else "",
         version.text if version is not None else "",
         format_ or 3,
-        document.locate(name.text_offset)[0] if name is not None else document.locate(
-            document.elements[root].offset
-        )[0],
+        line,
         tuple(dependencies),
         tuple((e.text, e.attributes.get("condition", "")) for e in exports if e.tag == "build_type" and e.text),
         exports,
@@ -166,6 +168,7 @@ def extract(data: bytes) -> Manifest:
         problems,
         tuple(unknown),
         warnings + tuple(empty),
+        column,
     )
 
 
@@ -179,6 +182,14 @@ def _list_children(document: Document, root: int) -> tuple[list[Element], list[E
     inside = set(exported)
     below = (element for element in document.elements[root + 1 :] if element not in inside)
     return [element for element in below if element.parent == root or element.name in ANY_FORMAT], exported
+
+
+def _make_export(document: Document, element: Element) -> Export:
+    line, column = document.locate(element.offset + 1)
+    at = document.locate(element.text_offset) if element.text else (0, 0)
+    values = {attribute.name: attribute.value for attribute in element.attributes}
+    places = {attribute.name: document.locate(attribute.offset) for attribute in element.attributes}
+    return Export(element.name, values, element.text, line, at[1] if at[0] == line else column, places)
 
 
 def _find_first(children: list[Element], tag: str) -> Element | None:
@@ -291,7 +302,7 @@ def _validate_manifest(
         for message in error.msg.splitlines():
             message = message.strip().removeprefix("- ")
             if message and message != "Error(s):" and not SAID_BEFORE.search(message):
-                problems.append(Problem(_find_line(message, document, children), _format_message(message)))
+                problems.append(_make_problem(message, document, children))
         if not problems:
             problems.append(Problem(1, "catkin_pkg refuses it"))
     except AssertionError:
@@ -301,7 +312,7 @@ def _validate_manifest(
         raise
     except Exception as error:  # whatever else a hostile file makes it raise is a fact about that file
         problems.append(Problem(1, f"catkin_pkg cannot read it: {type(error).__name__}: {error}"[:200]))
-    noted = tuple(Problem(_find_line(w, document, children), _format_message(w)) for w in warnings)
+    noted = tuple(_make_problem(warning, document, children) for warning in warnings)
     return tuple(sorted(problems, key=lambda p: p.line)), noted
 
 
@@ -318,14 +329,19 @@ def _format_message(message: str) -> str:
 QUOTED = re.compile(r"[\"'`]([^\"'`]+)[\"'`]")
 
 
-def _find_line(message: str, document: Document, children: list[Element]) -> int:
-    """The line of the child whose text or tag a message quotes, else that of the manifest's start."""
+def _make_problem(message: str, document: Document, children: list[Element]) -> Problem:
+    line, column = _find_place(message, document, children)
+    return Problem(line, _format_message(message), column)
+
+
+def _find_place(message: str, document: Document, children: list[Element]) -> tuple[int, int]:
+    """Line and column of the child whose text or tag a message quotes, else those of the manifest's start."""
     for quoted in QUOTED.findall(message):
         for child in children:
             if child.name != "name" and (child.text == quoted or child.get("email") == quoted):
-                return document.locate(child.text_offset)[0]
+                return document.locate(child.text_offset)
     for quoted in (*QUOTED.findall(message), *message.lower().split()):
         for child in children:
             if child.name == quoted or child.name + "s" == quoted:
-                return document.locate(child.text_offset)[0]
-    return document.locate(document.elements[0].offset)[0] if document.elements else 1
+                return document.locate(child.text_offset)
+    return document.locate(document.elements[0].offset) if document.elements else (1, 0)

@@ -142,11 +142,13 @@ def find_xml_problems(data: bytes) -> tuple[Problem, ...]:
     try:
         parser.Parse(data, True)
     except _EntityDefined:
-        return (Problem(parser.CurrentLineNumber, "defines XML entities, which are not expanded"),)
+        line, column = parser.CurrentLineNumber, parser.CurrentColumnNumber + 1
+        return (Problem(line, "defines XML entities, which are not expanded", column),)
     except expat.ExpatError as error:
         why = expat.ErrorString(error.code) or "syntax error"
-        line = min(error.lineno, data.count(b"\n") + 1)
-        return (Problem(max(line, 1), f"not well-formed XML: {why}"),)
+        last = data.count(b"\n") + 1
+        column = error.offset + 1 if 1 <= error.lineno <= last else 0
+        return (Problem(min(max(error.lineno, 1), last), f"not well-formed XML: {why}", column),)
     except (ValueError, LookupError) as error:
         return (Problem(1, f"not readable as XML: {error}"),)
     return ()

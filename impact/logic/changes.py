@@ -11,7 +11,16 @@ from ..model.flow.graph import GuardAt
 from . import guards
 from .guards import Ways
 from .history import PackageState
-from .match import SAME, OutletAt, Renames, StatementPlace, collect_conditions, match_outlets, match_statements
+from .match import (
+    SAME,
+    OutletAt,
+    Renames,
+    StatementPlace,
+    collect_conditions,
+    match_outlets,
+    match_statements,
+    normalize,
+)
 from .statements import Gate, Outlet, PackageStatements, Path, PublishStatement, StatementStart
 
 Kind = Literal["tightened", "widened", "equivalent", "changed", "new", "gone", "trigger changed"]
@@ -74,6 +83,10 @@ class Side(NamedTuple):
             s.name, d, statement, s.locate(statement.path)
         ) for s, d in self.packages for statement in d.statements]
 
+    def list_unread(self) -> frozenset[str]:
+        """The files that were not read in full."""
+        return frozenset(state.locate(path) for state, one in self.packages for path in one.unread)
+
     def list_outlets(self) -> list[OutletAt]:
         """All publishers."""
         found: list[OutletAt] = []
@@ -110,24 +123,75 @@ def changes(old: Side, new: Side, names: Renames = SAME) -> Iterator[LogicChange
     pairs, gone, come = match_statements(before, after, names)
     outlets = match_outlets(old.list_outlets(), new.list_outlets(), names)
     successors = {id(one.outlet): other.outlet for one, other in outlets}
-    for one, other in pairs:
-        yield from _compare_statements(one, other, names, successors)
+    said = [list(_compare_statements(one, other, names, successors)) for one, other in pairs]
+    for place, (one, other) in enumerate(pairs):
+        if any(change.kind != "equivalent" for change in said[place]):
+            merged = _find_merged(one, other, gone, come, names, successors)
+            if merged:
+                gone = [at for at in gone if at not in merged]
+                come = [at for at in come if at not in merged]
+                said[place] = []
+    for found in said:
+        yield from found
+    lost, gained = old.list_unread(), new.list_unread()
+    gone = [at for at in gone if at.path in lost or names.map_path(at.path) not in gained]
+    come = [at for at in come if at.path in gained or at.path not in {names.map_path(path) for path in lost}]
     gone = [at for at in gone if not _has_unclear_call(at, names, new)]
     come = [at for at in come if not _has_unclear_call(at, SAME, old, names)]
+    left, known = ({state.name for state, _ in side.packages} for side in (new, old))
     for at in gone:
         was = _describe_trigger("was published", at.statement)
+        was = was if at.package in left else f"{was}; no package `{at.package}` is built any more"
         yield _make_change("gone", at, at.outlets, _format_ways(at.statement.ways, at.statement), None, was)
     for at in come:
-        yield _make_change(
-            "new", at, at.outlets, None, _format_ways(
-                at.statement.ways, at.statement
-            ), _describe_trigger("is published", at.statement)
-        )
+        is_now = _describe_trigger("is published", at.statement)
+        is_now = is_now if at.package in known else f"{is_now}; there was no package `{at.package}`"
+        yield _make_change("new", at, at.outlets, None, _format_ways(at.statement.ways, at.statement), is_now)
     published = {id(outlet): at for at in after for outlet in at.outlets}
     for one, other in outlets:
         at = published.get(id(other.outlet))
         if at is not None:
             yield from _compare_outlets(one, other, at)
+
+
+def _find_merged(
+    one: StatementPlace,
+    other: StatementPlace,
+    gone: Sequence[StatementPlace],
+    come: Sequence[StatementPlace],
+    names: Renames,
+    successors: Mapping[int, Outlet],
+) -> list[StatementPlace]:
+    """The statements that became part of the new one, or were parts of the old one: of its publisher, and together with
+    them it runs when it ran before. Empty where there are none."""
+
+    def is_same(first: StatementPlace, second: StatementPlace) -> bool:
+        return all(change.kind == "equivalent" for change in _compare_statements(first, second, names, successors))
+
+    parts = [at for at in gone if _share_publisher(at, one)]
+    for some in (parts, *([at] for at in parts if len(parts) > 1)):
+        if some and is_same(_join_statements(one, some), other):
+            return some
+    parts = [at for at in come if _share_publisher(at, other)]
+    for some in (parts, *([at] for at in parts if len(parts) > 1)):
+        if some and is_same(one, _join_statements(other, some)):
+            return some
+    return []
+
+
+def _share_publisher(one: StatementPlace, other: StatementPlace) -> bool:
+    """Whether two statements of one revision publish through the same publisher."""
+    if one.package != other.package or one.statement.language != other.statement.language:
+        return False
+    if one.statement.outlets or other.statement.outlets:
+        return one.statement.outlets == other.statement.outlets
+    return one.path == other.path and one.statement.variable == other.statement.variable
+
+
+def _join_statements(one: StatementPlace, others: Iterable[StatementPlace]) -> StatementPlace:
+    """A statement that runs when one of these does."""
+    ways = dict.fromkeys(way for at in (one, *others) for way in at.statement.ways)
+    return one._replace(statement=msgspec.structs.replace(one.statement, ways=tuple(ways)))
 
 
 def _has_unclear_call(at: StatementPlace, names: Renames, other: Side, backwards: Renames = SAME) -> bool:
@@ -170,8 +234,15 @@ def _compare_statements(
             found = _make_change("tightened", other, outlets, old_shown, new_shown, why)
             yield msgspec.structs.replace(found, unreachable=True)
             return
-    if _cut_off(first) or _cut_off(second):
-        kind, why = _compare_guards(_select_own_way(first), _select_own_way(second), names, second.language)
+    whole = not _cut_off(first) and not _cut_off(second)
+    unseen = _find_unseen(first, second, names) if whole else frozenset()
+    if unseen or not whole:
+        old_ways, new_ways = _select_own_way(first), _select_own_way(second)
+        if unseen:
+            old_ways, new_ways = _select_behind(unseen, first, second, names)
+        if not old_ways or not new_ways:
+            return
+        kind, why = _compare_guards(old_ways, new_ways, names, second.language)
         if kind != "equivalent":
             yield _make_change(kind, other, outlets, old_shown, new_shown, why)
         return
@@ -190,7 +261,9 @@ def _compare_statements(
                 whys.append(f"{'also' if new_ways else 'no longer'} from {_describe_caller(new_ways or old_ways)}")
             continue
         kind, why = _compare_guards(old_ways, new_ways, names, second.language)
-        difference = _start_differs(old_ways[0].start, new_ways[0].start, names)
+        if kind != "equivalent" and _has_unknown_start(old_ways) != _has_unknown_start(new_ways):
+            kind = "changed"  # how often what is not seen makes it run is not known
+        difference = _start_differs(old_ways, new_ways, names)
         if difference:
             starts.append(difference)
         kinds.append(kind)
@@ -243,6 +316,55 @@ def _select_own_way(statement: PublishStatement) -> list[Path]:
     return [Path(StatementStart("unknown"), gates)]
 
 
+def _list_roots(statement: PublishStatement, names: Renames, own: str) -> frozenset[str]:
+    """The functions that nothing leads to in which ways begin, in the words of the new revision. own: what the function
+    of the statement itself is called."""
+    roots = (way.root for way in statement.ways if way.root)
+    return frozenset(own if root == statement.function else _map_function(root, names) for root in roots)
+
+
+def _list_functions(statement: PublishStatement, names: Renames, own: str) -> frozenset[str]:
+    """The functions that are seen to lead to a statement, as for _list_roots."""
+    named = {name for way in statement.ways for name in way.functions}
+    return frozenset((own, *(own if name == statement.function else _map_function(name, names) for name in named)))
+
+
+def _map_function(name: str, names: Renames) -> str:
+    return names.map_text(normalize(name))
+
+
+def _find_unseen(first: PublishStatement, second: PublishStatement, names: Renames) -> frozenset[str]:
+    """The functions of which it is seen on one side alone what leads to them, as they are called now. It may lead to
+    them on the other side too: only what they and those behind them ask tells of a change."""
+    own = normalize(second.function)
+    old_roots, new_roots = _list_roots(first, names, own), _list_roots(second, SAME, own)
+    lost, gained = old_roots - new_roots, new_roots - old_roots
+    found = lost & _list_functions(second, SAME, own) | gained & _list_functions(first, names, own)
+    if not found and any(way.start.kind == "unknown" for way in first.ways if way.root):
+        # What led to it and is not seen may be what leads to it now.
+        led = _group_starts(second, SAME).keys() - _group_starts(first, names).keys()
+        found = frozenset((own,)) if lost and any(kind not in _UNLED for kind, _ in led) else found
+    return frozenset((own,)) if own in found else found
+
+
+def _select_behind(
+    functions: frozenset[str], first: PublishStatement, second: PublishStatement, names: Renames
+) -> tuple[list[Path], list[Path]]:
+    """The ways of both sides that are seen to run through some functions, from there on."""
+    own = normalize(second.function)
+    sides: list[list[Path]] = []
+    for one, here in ((first, names), (second, SAME)):
+        ways: dict[tuple[Gate, ...], None] = {}
+        for way in one.ways:
+            names_of = (own if name == one.function else _map_function(name, here) for name in way.functions)
+            start = next((place for place, name in enumerate((*names_of, own)) if name in functions), None)
+            if start is not None:
+                behind = {*way.functions[start:], one.function}
+                ways[tuple(gate for gate in way.gates if gate.of in behind)] = None
+        sides.append([Path(StatementStart("unknown"), gates) for gates in ways])
+    return sides[0], sides[1]
+
+
 def _combine_kinds(kinds: Iterable[guards.Kind]) -> guards.Kind:
     found = set(kinds) - {"equivalent"}
     if not found:
@@ -270,7 +392,15 @@ def _compare_guards(old: Sequence[Path], new: Sequence[Path], names: Renames, la
         if written != "equivalent":
             reported = (written_old, written_new)
             kind = written if kind == "changed" else kind
+    if kind != "equivalent" and _count_loops(old) != _count_loops(new):
+        # A loop that comes or goes is a matter of how often, too.
+        return "changed", guards.explain_ways(*reported, reading)
     return kind, guards.explain_ways(*reported, reading) if kind != "equivalent" else ""
+
+
+def _count_loops(ways: Sequence[Path]) -> set[int]:
+    """How many loops there are on ways, each of which may run what is in it several times."""
+    return {sum(gate.kind in ("while", "for", "do") for gate in way.gates) for way in ways}
 
 
 def _build_guard_ways(ways: Iterable[Path], meant: bool = False) -> Ways:
@@ -340,7 +470,12 @@ def _describe_caller(ways: Sequence[Path]) -> str:
     return f"`{of}`" if of else "another caller"
 
 
-def _start_differs(old: StatementStart, new: StatementStart, names: Renames) -> str:
+def _has_unknown_start(ways: Sequence[Path]) -> bool:
+    return all(way.start.kind == "unknown" for way in ways)
+
+
+def _start_differs(old_ways: Sequence[Path], new_ways: Sequence[Path], names: Renames) -> str:
+    old, new = old_ways[0].start, new_ways[0].start
     if old.kind == new.kind:
         if old.kind in _UNSAID or _normalize_detail(names.map_text(old.detail)) == _normalize_detail(new.detail):
             return ""
@@ -349,9 +484,12 @@ def _start_differs(old: StatementStart, new: StatementStart, names: Renames) -> 
                 return f"{_describe_start(new)}, was without pace"
             return f"{new.kind} without pace, was `{old.detail}`"
         return f"{_describe_start(new)}, was `{old.detail}`"
-    if _UNLED & {old.kind, new.kind}:
+    if "unknown" in (old.kind, new.kind):
         return ""
-    return f"on {_describe_start(new)}, was on {_describe_start(old)}"
+    if "thread" in (old.kind, new.kind) and {old.kind, new.kind} <= {"thread", "start", "loop"}:
+        return ""
+    was, is_now = (", ".join(sorted({_describe_start(way.start) for way in ways})) for ways in (old_ways, new_ways))
+    return f"on {is_now}, was on {was}"
 
 
 def _describe_start(start: StatementStart) -> str:

@@ -21,6 +21,7 @@ from .guard_terms import (
     join,
     make_member,
     make_opaque,
+    make_place,
     negate,
     parse_number,
 )
@@ -73,8 +74,21 @@ def loop(head: str) -> GuardReading:
     statement = _parse_statement(f"for {inside}: pass")
     if not isinstance(statement, ast.For) or len(inside) > LONGEST:
         return GuardReading((Conjunct(head, make_opaque(head)),))
-    element = Term("each", "", (_Reader().parse_term(statement.iter, 0),))
-    return GuardReading((Conjunct(f"for {inside}", element),), tuple(_unpack_target(statement.target, element)))
+    walked = _Reader().parse_term(statement.iter, 0)
+    targets = statement.target.elts if isinstance(statement.target, (ast.Tuple, ast.List)) else []
+    called = walked.parts[0].text if walked.kind == "call" and len(walked.parts) == 2 else ""
+    if called in ("range", "xrange") and walked.parts[1].kind == "size":
+        walked = walked.parts[1].parts[0]
+        names = _unpack_target(statement.target, make_place(walked))
+    elif called == "enumerate" and len(targets) == 2:
+        walked = walked.parts[1]
+        names = [
+            *_unpack_target(targets[0], make_place(walked)),
+            *_unpack_target(targets[1], Term("each", "", (walked,))),
+        ]
+    else:
+        names = _unpack_target(statement.target, Term("each", "", (walked,)))
+    return GuardReading((Conjunct(f"for {inside}", Term("each", "", (walked,))),), tuple(names))
 
 
 def _unpack_target(target: ast.expr, value: Term) -> list[tuple[str, Term]]:

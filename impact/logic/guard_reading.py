@@ -13,16 +13,21 @@ from .guard_terms import (
     GuardReading,
     Term,
     define,
+    find_elements,
     join,
     list_names,
+    make_place,
     negate,
     rebuild_term,
     rename_term,
     split_outside,
+    split_owner,
     substitute_names,
 )
 
 Language = Literal["cpp", "python"]
+_PLACE = re.compile(r"[A-Za-z]\w*(?<!_)")
+"""A variable that is no member, as far as the name tells."""
 
 
 def collect_pieces(way: Sequence[GuardAt], language: Language, renames: Mapping[str, str]) -> tuple[Conjunct, ...]:
@@ -34,7 +39,7 @@ def collect_pieces(way: Sequence[GuardAt], language: Language, renames: Mapping[
         known = names.setdefault(guard.of, {})
         reading = read(language, guard.kind, guard.text)
         for piece in reading.pieces:
-            term = substitute_names(piece.term, known) if known else piece.term
+            term = find_elements(substitute_names(piece.term, known)) if known else piece.term
             if renames:
                 term = rename_term(term, renames)
             if term.kind != "true":
@@ -69,7 +74,8 @@ def read(language: Language, kind: str, text: str) -> GuardReading:
     """One guard by itself; kind and text as in facts."""
     reader = guard_cpp if language == "cpp" else guard_python
     if kind in ("if", "while"):
-        return reader.parse_condition(text, True)
+        reading = reader.parse_condition(text, True)
+        return _read_walk(reading) if kind == "while" and language == "cpp" else reading
     if kind == "unless":
         if re.match(r"(?:catch|except)\b", text):
             return GuardReading((Conjunct(f"no {text}", negate(_parse_caught(text))),))
@@ -88,6 +94,29 @@ def read(language: Language, kind: str, text: str) -> GuardReading:
     if kind == "catch":
         return GuardReading((Conjunct(f"catch ({text})", _parse_caught(text)),))
     return GuardReading((Conjunct(text, Term("opaque", f"{kind} {' '.join(text.split())}")),))
+
+
+def _read_walk(reading: GuardReading) -> GuardReading:
+    """The condition of a loop that walks through a container, as one that says that there is an element:
+    `it != v.end()` and `i < v.size()`, as `for (auto& one : v)`."""
+    if len(reading.pieces) != 1 or reading.names:
+        return reading
+    piece = reading.pieces[0]
+    term = piece.term.parts[0] if piece.term.kind == "not" else piece.term
+    operator = "!=" if piece.term.kind == "not" and term.text == "==" else term.text
+    if term.kind != "compare" or operator not in ("!=", "<"):
+        return reading
+    for place, end in (term.parts, term.parts[::-1]) if operator == "!=" else (term.parts,):
+        if place.kind != "name" or not _PLACE.fullmatch(place.text):
+            continue
+        if end.kind == "size":
+            element = Term("each", "", end.parts)
+            return GuardReading((piece._replace(term=element),), ((place.text, make_place(end.parts[0])),))
+        owner, method = split_owner(end.parts[0]) if end.kind == "call" and len(end.parts) == 1 else (None, "")
+        if owner is not None and operator == "!=" and method in ("end", "cend", "rend", "crend"):
+            element = Term("each", "", (owner,))
+            return GuardReading((piece._replace(term=element),), ((place.text, element),))
+    return reading
 
 
 def _parse_caught(text: str) -> Term:

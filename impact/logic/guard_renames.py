@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from difflib import SequenceMatcher
 
 from .guard_reading import Language
@@ -27,6 +27,63 @@ Statement = tuple[tuple[str, bool], ...]
 """Tokens, each with whether it is a name."""
 
 
+def propose_moves(old: str, new: str, language: Language) -> dict[str, str]:
+    """Variables and members of one text that are members of an object in the next: `ready` to `state.ready`, in Python
+    `this.ready` to `this.state.ready`. old, new and what is beyond doubt as for propose_renames; that the class of the
+    object has a member of the old name is no use of it."""
+    if old == new:
+        return {}
+    before, after = (
+        [_join_paths(statement, language) for statement in _split_statements(text, language)] for text in (old, new)
+    )
+    used = [
+        [tuple((token, is_name and not _is_declared(one, place)) for place, (token, is_name) in enumerate(one))
+         for one in statements]
+        for statements in (before, after)
+    ]  # fmt: skip
+    found = _pair_names(used[0], used[1], _is_assigned)
+    first = 1 if language == "python" else 0
+    return {
+        name: successor
+        for name, successor in found.items()
+        if name.count(".") == first and successor.count(".") > first and name.startswith("this.") == bool(first)
+    }
+
+
+def _join_paths(statement: Statement, language: Language) -> Statement:
+    """A statement with paths as one name: `a->b.c` is `a.b.c`. What a method itself is of is left out in C++, where it
+    may be, and is `this` in Python."""
+    result: list[tuple[str, bool]] = []
+    joins = False
+    for token, is_name in statement:
+        if token in (".", "->") and result and result[-1][1]:
+            joins = True
+        elif joins and is_name:
+            joins = False
+            result[-1] = (token if result[-1][0] == "this" else f"{result[-1][0]}.{token}", True)
+            if language == "python" and result[-1][0].startswith("self."):
+                result[-1] = (f"this.{token}", True)
+        else:
+            if joins:
+                result.append((".", False))
+            joins = False
+            result.append((token, is_name))
+    return tuple(result)
+
+
+def _is_declared(statement: Statement, place: int) -> bool:
+    """Whether a name follows a type, and nothing is assigned to it there."""
+    if place == 0:
+        return False
+    before, is_name = statement[place - 1]
+    following = statement[place + 1][0] if place + 1 < len(statement) else ""
+    return ((is_name and before not in _KEYWORDS) or before in _TYPE_ENDS) and following != "="
+
+
+def _is_assigned(statement: Statement, place: int) -> bool:
+    return place + 1 < len(statement) and statement[place + 1][0] in ("=", ":=")
+
+
 def propose_renames(old: str, new: str, language: Language) -> dict[str, str]:
     """Identifiers of one text that are called otherwise in the next, old name to new name.
 
@@ -37,7 +94,13 @@ def propose_renames(old: str, new: str, language: Language) -> dict[str, str]:
     """
     if old == new:
         return {}
-    before, after = _split_statements(old, language), _split_statements(new, language)
+    return _pair_names(_split_statements(old, language), _split_statements(new, language), _is_made)
+
+
+def _pair_names(
+    before: list[Statement], after: list[Statement], is_made: Callable[[Statement, int], bool]
+) -> dict[str, str]:
+    """Names that are gone to those that stand in their places; see propose_renames."""
     if len(before) + len(after) > _MOST_STATEMENTS:
         return {}
     counted_before, counted_after = _count_names(before), _count_names(after)
@@ -51,7 +114,7 @@ def propose_renames(old: str, new: str, language: Language) -> dict[str, str]:
         for place, ((name, _), (successor, _)) in enumerate(zip(one, other, strict=True)):
             if name in gone and successor in come:
                 pairs[name, successor] += 1
-                if _is_made(one, place):
+                if is_made(one, place):
                     made.add((name, successor))
     successors: dict[str, set[str]] = {}
     predecessors: dict[str, set[str]] = {}

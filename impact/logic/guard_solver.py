@@ -335,6 +335,14 @@ class Solver:
     def list_axioms(self) -> list[str]:
         """What holds of the terms whatever their types are."""
         result = list(self.list_python_axioms()) if self.python else []
+        for term, truth in self.truths.items():
+            if term.kind == "each":
+                # A loop through a container runs when there is something in it.
+                size = self.numbers.get(Term("size", "", term.parts))
+                if size is not None:
+                    result.append(f"(= {truth} (> {size} 0.0))")
+                if self.python and term.parts[0] in self.truths:
+                    result.append(f"(=> {truth} {self.truths[term.parts[0]]})")
         for term, others in self.equated.items():
             for text in sorted(other for other in others if other.kind == "string" and term in self.counted):
                 size, equal = self.encode(Term("size", "", (term,))), f"(= {self.encode(term)} {self.encode(text)})"

@@ -151,10 +151,18 @@ def rebuild_term(kind: str, text: str, parts: tuple[Term, ...]) -> Term:
 
 
 def rename_term(term: Term, renames: Mapping[str, str]) -> Term:
-    """The term with identifiers (parts of paths) called otherwise."""
+    """The term with identifiers (parts of paths) called otherwise. What became a path (`ready`, `state.ready`) is a
+    variable or member: only where a path begins with it."""
     text = term.text
     if term.kind in ("name", "opaque", "member"):
-        text = _IDENTIFIER.sub(lambda match: renames.get(match[0], match[0]), text)
+
+        def change(match: re.Match[str]) -> str:
+            successor = renames.get(match[0], match[0])
+            begins = term.kind == "name" and text[: match.start()] in ("", "this.")
+            return match[0] if "." in successor and not begins else successor
+
+        path = next((name for name in renames if "." in name and f"{text}.".startswith(f"{name}.")), "")
+        text = renames[path] + text[len(path) :] if path and term.kind == "name" else _IDENTIFIER.sub(change, text)
     return rebuild_term(term.kind, text, tuple(rename_term(part, renames) for part in term.parts))
 
 
@@ -174,6 +182,25 @@ def substitute_names(term: Term, names: Mapping[str, Term]) -> Term:
         for name in rest.split(".") if rest else ():
             value = make_member(value, name)
         return value
+
+    return rewrite(term, change)
+
+
+def make_place(container: Term) -> Term:
+    """What a loop through the places of a container calls each of them, for the variable of the loop."""
+    return Term("op", "place", (container,))
+
+
+def find_elements(term: Term) -> Term:
+    """The term with `v[i]` and `*it`, where a loop walks through `v` so, as the element of the loop."""
+
+    def change(part: Term) -> Term | None:
+        if part.kind == "op" and part.text == "*" and len(part.parts) == 1 and part.parts[0].kind == "each":
+            return part.parts[0]
+        if part.kind == "index" and len(part.parts) == 2 and part.parts[1].text == "place":
+            container = find_elements(part.parts[0])
+            return Term("each", "", (container,)) if find_elements(part.parts[1]) == make_place(container) else None
+        return None
 
     return rewrite(term, change)
 

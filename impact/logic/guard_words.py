@@ -1,5 +1,6 @@
 """In words, what guards ask for that they did not, and what they ask for no longer."""
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from itertools import takewhile
 
@@ -11,6 +12,9 @@ _MOST_WAYS = 3
 _AROUND = 3
 _BLOCKS = ("macro ", "catch ")
 
+_COMPARED = re.compile(r"\w+ ?(?:<|!=)")
+"""The condition of a loop as it is written, and no head of one."""
+
 Asked = Callable[[Sequence[Conjunct], Conjunct], bool]
 """Whether some pieces together already ask for another."""
 
@@ -21,6 +25,7 @@ def describe_change(before: Sequence[Conjunct], after: Sequence[Conjunct], asked
     clauses: list[str] = []
     for piece in list(added):
         other = next((other for other in removed if _is_other_form(other.term, piece.term)), None)
+        other = other or next((other for other in removed if _is_alternative(other, piece, asked)), None)
         if other is not None:
             removed.remove(other)
             added.remove(piece)
@@ -127,6 +132,12 @@ def _is_other_form(old: Term, new: Term) -> bool:
     return _get_kind(old) == _get_kind(new) in ("and", "or", "compare") and bool(was & now)
 
 
+def _is_alternative(old: Conjunct, new: Conjunct, asked: Asked) -> bool:
+    """Whether one of two conditions is the other one with an alternative."""
+    either = any(_get_kind(one.term) == ("and" if one.term.kind == "not" else "or") for one in (old, new))
+    return either and (asked([old], new) or asked([new], old))
+
+
 def _collect_names(term: Term) -> frozenset[str]:
     """The names in a condition that are no constants."""
     return frozenset(name for name in list_names(term) if not name.rpartition("::")[2].isupper())
@@ -138,7 +149,9 @@ def _get_kind(term: Term) -> str:
 
 def _is_block(piece: Conjunct) -> bool:
     term = piece.term
-    return term.kind == "each" or (term.kind == "opaque" and term.text.startswith(_BLOCKS))
+    if term.kind == "each":
+        return not _COMPARED.match(piece.text)
+    return term.kind == "opaque" and term.text.startswith(_BLOCKS)
 
 
 def _format_pieces(pieces: Sequence[Conjunct]) -> str:

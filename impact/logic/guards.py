@@ -14,7 +14,7 @@ from typing import Literal, NamedTuple
 from ..model.flow.graph import GuardAt
 from .guard_reading import Language, collect_pieces, drop_this
 from .guard_solver import Solver, Undecided
-from .guard_terms import FALSE, TRUE, Conjunct, Term, join
+from .guard_terms import FALSE, TRUE, Conjunct, Term, join, list_names, rewrite
 from .guard_words import describe_ways
 
 Kind = Literal["tightened", "widened", "equivalent", "changed"]
@@ -92,7 +92,39 @@ def _build_sides(old: Ways, new: Ways, reading: NameReading) -> tuple[_Side, _Si
     after = tuple(collect_pieces(way, reading.language, {}) for way in new)
     if reading.language == "cpp":
         before, after = drop_this((before, after))
+    before = _follow_moves(before, after)
     return before, after, lambda: Solver(reading.language, MILLISECONDS)
+
+
+def _follow_moves(before: _Side, after: _Side) -> _Side:
+    """The old side with members named as the new one does that have moved into an object inside theirs, or out of one:
+    `planner.ready` and `planner.state.ready`, where each side has but one of them."""
+    was, is_now = _collect_paths(before), _collect_paths(after)
+    moves: dict[str, str] = {}
+    for old in was - is_now:
+        new = [name for name in is_now - was if _is_moved(old, name)]
+        if len(new) == 1 and sum(_is_moved(other, new[0]) for other in was - is_now) == 1:
+            moves[old] = new[0]
+    if not moves:
+        return before
+
+    def change(term: Term) -> Term | None:
+        return Term("name", moves[term.text]) if term.kind == "name" and term.text in moves else None
+
+    return tuple(tuple(piece._replace(term=rewrite(piece.term, change)) for piece in way) for way in before)
+
+
+def _collect_paths(side: _Side) -> frozenset[str]:
+    return frozenset(name for way in side for piece in way for name in list_names(piece.term) if "." in name)
+
+
+def _is_moved(one: str, other: str) -> bool:
+    """Whether two paths begin and end alike, and one has all of the other besides."""
+    long, short = sorted((one.split("."), other.split(".")), key=len, reverse=True)
+    if len(long) == len(short) or (long[0], long[-1]) != (short[0], short[-1]) or long[:2] == ["this", short[-1]]:
+        return False
+    rest = iter(long)
+    return all(part in rest for part in short) and (short[0] != "this" or len(short) > 2)
 
 
 def _collect_terms(side: _Side) -> frozenset[frozenset[Term]]:

@@ -7,7 +7,7 @@ import re
 
 from ...edges.memory import cache_method
 from ..facts.flow import FlowExpr
-from ..model.flow.code import FlowCode, Fn
+from ..model.flow.code import FlowCode, Fn, get_tail
 from ..model.flow.graph import GuardAt
 from .guard_terms import split_outside
 
@@ -16,7 +16,12 @@ _LONGEST = 1000
 _CUT = 119
 """An expression as long as this may have been cut off when it was read."""
 _IDENTIFIER = re.compile(r"(?<![\w.>:\"'])(?:(?:this->|self\.)?)([A-Za-z_]\w*)(?![\w:\"'])")
+_PATH = re.compile(r"(?:this->|self\.)?[A-Za-z_]\w*(?:(?:\.|->)[A-Za-z_]\w*)+(?=\()")
+_CALL = re.compile(r"\w\s*\(")
 _PLAIN = re.compile(r"[\w.:]+(\(\))?")
+_WORDS = frozenset(
+    ("and", "or", "not", "is", "in", "true", "false", "True", "False", "None", "nullptr", "NULL", "this")
+)  # fmt: skip
 
 
 class Meaning:
@@ -43,9 +48,12 @@ class Meaning:
             if match.start() < position:
                 continue
             end = match.end()
-            if text[end : end + 1] == "(":
+            path = _PATH.match(text, match.start())
+            if path or text[end : end + 1] == "(":
+                end = path.end() if path else end
                 close = _find_closing(text, end)
-                value = self._expand_predicate(match[0], text[end + 1 : close], fn, depth) if close else None
+                callee = text[match.start() : end]
+                value = self._expand_predicate(callee, text[end + 1 : close], fn, depth) if close else None
                 end = close + 1
             else:
                 bare = match[0] == match[1]
@@ -75,25 +83,58 @@ class Meaning:
         return self._format_value(made[0].value, fn, depth)
 
     def _expand_predicate(self, callee: str, arguments: str, fn: Fn, depth: int) -> str | None:
-        """What a function of the code returns, when returning is all that it does."""
-        path = callee.replace("this->", "this.").replace("self.", "this.")
+        """What a function of the code returns, when returning is all that it does; of the object it is called on."""
+        path = callee.replace("->", ".").replace("self.", "this.")
         targets = self.code.list_targets(path, fn)
         if len(targets) != 1:
             return None
         target = targets[0].facts
-        rows = list(target.assignments)
-        if not rows or rows[-1].operator != "return" or any(row.operator == "return" for row in rows[:-1]):
-            return None
-        if rows[-1].guard != -1 or len(rows) > 4:
-            return None
-        value = self._format_value(rows[-1].value, targets[0], depth)
+        value = self._find_returned(targets[0], depth)
         given = split_outside(arguments, ",") if arguments.strip() else []
         if value is None or len(given) != len(target.parameters):
             return None
+        owner = callee[: -len(get_tail(path))]
+        if owner not in ("", "this->", "self."):
+            if _CALL.search(value):
+                return None  # what an object of another class computes is its own business
+            value = self._put_owner_before(value, owner, targets[0])
         for parameter, argument in zip(target.parameters, given, strict=True):
             said = argument if _PLAIN.fullmatch(argument) else f"({argument})"
             value = re.sub(rf"(?<![\w.>]){re.escape(parameter.name)}\b", lambda _, said=said: said, value)
         return value
+
+    def _find_returned(self, fn: Fn, depth: int) -> str | None:
+        """What a function returns that does nothing else: one expression, or whether a condition holds."""
+        rows, asked = fn.facts.assignments, fn.facts.guards
+        last = rows[-1] if rows else None
+        if last is None or last.operator != "return" or len(rows) > 4:
+            return None
+        if not any(row.operator == "return" for row in rows[:-1]):
+            return self._format_value(last.value, fn, depth) if last.guard == -1 else None
+        if len(rows) != 2 or not 0 <= rows[0].guard < len(asked):
+            return None
+        first, other = asked[rows[0].guard], asked[rows[1].guard] if rows[1].guard >= 0 else None
+        said = [row.value.text.lower() if row.value.kind in ("number", "name") else "" for row in rows]
+        if sorted(said) != ["false", "true"] or first.kind != "if" or first.outer != -1 or len(first.text) >= _CUT:
+            return None
+        if other is not None and (other.kind, other.text, other.outer) != ("unless", first.text, -1):
+            return None
+        text = self._expand_text(first.text, fn, depth + 1)
+        if said[0] == "true":
+            return f"({text})"
+        return f"(not ({text}))" if fn.source.facts.language == "python" else f"(!({text}))"
+
+    def _put_owner_before(self, value: str, owner: str, fn: Fn) -> str:
+        """An expression of a method about the object that the method is called on. owner: it, with the sign behind."""
+        python = fn.source.facts.language == "python"
+        parameters = {one.name for one in fn.facts.parameters}
+
+        def name(match: re.Match[str]) -> str:
+            own = match[0] != match[1]
+            other = python or match[1] in parameters or match[1] in _WORDS or match[1].isupper()
+            return match[0] if other and not own else f"{owner}{match[1]}"
+
+        return _IDENTIFIER.sub(name, value)
 
     def _format_value(self, value: FlowExpr, fn: Fn, depth: int) -> str | None:
         """An expression as source in which names are put back too; None for one that decides nothing by itself."""

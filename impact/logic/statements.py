@@ -3,17 +3,18 @@ publishers and its subscribers. Small enough to be kept for every commit of a re
 
 import re
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 from typing import Any
 
 import msgspec
 
 from ...edges.memory import cache_method
 from ..facts import kinds
-from ..facts.flow import FlowCall, FlowFile
+from ..facts.flow import FlowCall, FlowExpr, FlowFile
 from ..model.flow.code import FlowCode, Fn, get_tail
 from ..model.flow.endpoints import Site, Statement, unparse
-from ..model.flow.graph import GuardAt, Node, Trigger, Way
-from ..model.flow.join import Join, Owner
+from ..model.flow.graph import GuardAt, Node, Trigger
+from ..model.flow.join import CallWay, Join, Owner
 from ..model.flow.nodes import BuiltPackage, asks_for_name, find_entry_point
 from ..model.flow.qos import find_qos
 from ..model.flow.values import FlowValue
@@ -24,7 +25,8 @@ _LIVE = frozenset(
     ("ros::ok()", "rclcpp::ok()", "ok()", "true", "True", "1", "rclpy.ok()", "not rospy.is_shutdown()",
      "not rospy.core.is_shutdown()", "!ros::isShuttingDown()", "not is_shutdown()", "(1)", "(true)")
 )  # fmt: skip
-_OK = re.compile(r"(?:[\w.]|->)+(?:\.|->)ok\(\)")
+_OK = re.compile(r"(?:(?:[\w.]|->)+(?:\.|->))?(?:ros_?)?ok\(\)")
+"""That a node, its library or a wrapper of that is up."""
 _LOOPS = frozenset(("while", "do"))
 _CALLS = re.compile(r"\w\s*[(\[]|\]\s*\(")
 _NAMES = re.compile(r"(?<![\w.>:\"'])(?:this->|self\.)?([A-Za-z_]\w*)(?![\w\"':])")
@@ -53,10 +55,14 @@ class StatementStart(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class Path(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """One way to a statement; gates outermost first. Loops that last as long as the node does are not among them."""
+    """One way to a statement; gates outermost first. Loops that last as long as the node does are not among them. root:
+    the function where it begins when nothing is seen that leads to it: no caller, or nobody who makes the object.
+    functions: those that it runs through before the statement's own."""
 
     start: StatementStart
     gates: tuple[Gate, ...] = ()
+    root: str = ""
+    functions: tuple[str, ...] = ()
 
 
 class Outlet(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -247,21 +253,38 @@ class _Digester:
         own = join.list_guards(fn, use.call.guard)
         led = ((way, way.trigger) for way in join.list_ways(fn))
         found = [way for way, by in led if by.kind != "subscriber" or (by.path, by.line) not in self.implied]
-        found = found or [Way(Trigger("unknown", "", "", 0))]
-        ways = [self._build_path(way.trigger, (*way.guards, *own)) for way in found]
+        found = found or [CallWay(Trigger("unknown", "", "", 0))]
+        ways = [self._build_path(way, fn, own) for way in found]
         nodes = tuple(sorted({node.id for node in map(_get_node, self._find_owners(fn)) if node is not None}))
         return PublishStatement(
             fn.source.path, use.call.line, fn.name, join.calls.get_receiver(use), outlets, statement.type,
             statement.expression, fn.source.facts.language, nodes, tuple(dict.fromkeys(ways)),
         )  # fmt: skip
 
-    def _build_path(self, trigger: Trigger, guards: tuple[GuardAt, ...]) -> Path:
+    @cached_property
+    def _handed(self) -> dict[str, Fn]:
+        """Lambdas that no call is seen of, by their names: they run where they stand, or when who got them wants."""
+        code = self.join.code
+        return {fn.name: fn for fn in code.functions if fn.is_lambda and not code.callers.get(fn)}
+
+    def _find_trigger(self, way: CallWay, fn: Fn) -> Trigger:
+        """What a way begins with: not known where the start of a program hands a lambda to something."""
+        if way.trigger.kind == "start":
+            handed = next((self._handed[name] for name in (*way.functions, fn.name) if name in self._handed), None)
+            if handed is not None:
+                return Trigger("unknown", get_tail(handed.name), handed.source.path, handed.facts.line)
+        return way.trigger
+
+    def _build_path(self, way: CallWay, fn: Fn, own: tuple[GuardAt, ...]) -> Path:
+        trigger, guards = self._find_trigger(way, fn), (*way.guards, *own)
         start = StatementStart(trigger.kind, trigger.detail)
+        unsaid = trigger.kind in ("start", "unknown")
+        unled = trigger.kind == "unknown" or (trigger.kind == "start" and trigger.detail not in ("", "main"))
         gates: list[Gate] = []
-        for guard in guards:
-            unsaid = trigger.kind in ("start", "unknown")
+        for place, guard in enumerate(guards):
             asked, lives = _strip_liveness(guard.text) if guard.kind in _LOOPS else (guard.text, False)
-            if unsaid and guard.kind == "if" and _is_live(guard.text):
+            loops = any(one.kind in _LOOPS for one in guards[:place])
+            if unsaid and loops and guard.kind == "if" and _is_live(guard.text):
                 asked, lives = "", True  # what stands in the loop's condition itself
             if unsaid and (lives or (guard.kind in _LOOPS and trigger.kind == "start")):
                 kind = "loop" if trigger.kind == "start" else "thread"
@@ -271,7 +294,12 @@ class _Digester:
                 gates.append(Gate(guard.kind, asked, guard.of, meaning, self._is_fixed(guard)))
         if start.kind in ("start", "unknown"):
             start = StatementStart(start.kind)
-        return Path(start, tuple(gates))
+        return Path(start, tuple(gates), self._find_root(trigger) if unled else "", way.functions)
+
+    def _find_root(self, trigger: Trigger) -> str:
+        """The whole name of the function that a way begins in."""
+        functions = self.join.code.functions_in.get(trigger.path, ())
+        return next((fn.name for fn in functions if fn.facts.line == trigger.line), trigger.detail)
 
     @cache_method
     def _is_fixed(self, guard: GuardAt) -> bool:
@@ -300,11 +328,13 @@ class _Digester:
         return any(self.join.code.list_targets(call.callee, fn) for call in fn.facts.calls)
 
     def _find_rate(self, guard: GuardAt) -> str:
-        """The rate at which a loop goes round, as it is written where it is made; empty when none is seen."""
+        """The rate at which a loop goes round, as it is written where it is made; empty when none is seen, or several
+        that only some rounds keep."""
         fn = self.join.code.by_name.get((guard.path, guard.of))
         if fn is None:
             return ""
         rows = fn.facts.guards
+        paces: list[tuple[bool, bool, str]] = []
         for call in fn.facts.calls:
             if get_tail(call.callee) not in ("sleep", "sleep_for"):
                 continue
@@ -314,25 +344,37 @@ class _Digester:
             if 0 <= place < len(rows):
                 pace = self._describe_sleep(call, fn)
                 if pace:
-                    return pace
-        return ""
+                    paces.append((bool(call.arguments), place != call.guard, pace))
+        # What is made to keep a rate goes before pauses, what every round meets before what some do.
+        best = [pace for *kind, pace in paces if kind == list(min(paces)[:2])]
+        return best[0] if best and (len(set(best)) == 1 or not min(paces)[1]) else ""
 
     def _describe_sleep(self, call: FlowCall, fn: Fn) -> str:
         if call.arguments:
-            return f"every {unparse(call.arguments[0])}"
+            return f"every {_describe_number(call.arguments[0], fn)}"
         receiver = call.callee.rpartition(".")[0]
         if receiver.endswith("()"):
             name, line = receiver.removesuffix("()"), call.line
             made = [one for one in fn.facts.calls if one.callee == name and one.line == line]
-            return f"{get_tail(name).lower()} {unparse(made[0].arguments[0])}" if made and made[0].arguments else ""
+            pace = _describe_number(made[0].arguments[0], fn) if made and made[0].arguments else ""
+            return f"{get_tail(name).lower()} {pace}" if pace else ""
         code = self.join.code
         variable = code.identify(receiver, fn)
-        for _, each in code.list_writes(variable):
-            paces = [unparse(part) for part in each.value.parts if part.text not in ("this", "self", "*this")]
+        for writer, each in code.list_writes(variable):
+            parts = [part for part in each.value.parts if part.text not in ("this", "self", "*this")]
+            paces = [_describe_number(part, writer) for part in parts]
             if paces and each.value.kind in ("make", "call", "list"):
                 kind = get_tail(each.value.text).lower() if each.value.text else "rate"
                 return f"{kind} {paces[0]}"
         return ""
+
+
+def _describe_number(value: FlowExpr, fn: Fn) -> str:
+    """A number as written; that of a variable that is one and nothing else."""
+    made = fn.assigned.get(value.text, []) if value.kind == "name" and value.text in fn.locals else []
+    if len(made) == 1 and made[0].operator == "=" and made[0].value.kind == "number":
+        return unparse(made[0].value)
+    return unparse(value)
 
 
 def _get_node(owner: Owner) -> Node | None:

@@ -15,7 +15,7 @@ from ..model.flow import join
 from ..source_keys import compute_source_key
 from ..targets.tables import compute_data_version
 from .changes import LogicChange, Side, changes, is_unchanged
-from .guard_renames import propose_renames
+from .guard_renames import propose_moves, propose_renames
 from .guard_solver import limit_questions
 from .guards import Language
 from .history import PackageFile, PackageState
@@ -66,7 +66,8 @@ def find_renamed_words(
                 before.append(read(file).decode("utf-8", "replace"))
                 after.append(read(other).decode("utf-8", "replace"))
         if before and sum(map(len, before)) + sum(map(len, after)) <= _LONGEST_TEXT:
-            found.update(propose_renames("\n".join(before), "\n".join(after), language))
+            texts = "\n".join(before), "\n".join(after)
+            found.update({**propose_moves(*texts, language), **propose_renames(*texts, language)})
     return found
 
 

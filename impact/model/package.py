@@ -22,6 +22,7 @@ from ..facts.cmake import CMakeFile
 from ..facts.condition import Condition
 from ..facts.cpp.lexical import CppFile, Include
 from ..facts.cpp.schema import CodeSpot
+from ..facts.cpp.tree_nodes import TreeNodes, mark_extended, merge_tree_nodes
 from ..facts.distros import DistroFile
 from ..facts.interface import Interface
 from ..facts.kinds import HEADER_ENDINGS, make_empty
@@ -66,7 +67,7 @@ if TYPE_CHECKING:
     from .members import FoundField
     from .members import NamedInterface as Meant
     from .python.api import Changing
-    from .settings import Setting
+    from .settings import NamedNode, Setting
 
 # Folders whose files run only by hand or are read only by people: what they need is worth a note at most.
 ASIDE = frozenset({"example", "examples", "demo", "demos", "doc", "docs", "tutorial", "tutorials", "sample", "samples"})
@@ -253,6 +254,20 @@ class SettingUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     value: str = ""
 
 
+class ValueUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A value that a file of parameters sets for a node or plugin of a package, see settings.py; no text. name,
+    package, plugin, node: as in SettingUse. type, text: as GivenValue has them."""
+
+    name: str
+    package: str
+    plugin: str
+    node: str
+    at: At
+    role: str
+    type: str
+    text: str
+
+
 class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """All that rules ask of one package. Paths are relative to the workspace.
 
@@ -263,8 +278,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     nothing relative to their package, which a program cannot. plain_scripts: those
     whose first line names `python`, of no version. at_home: Python files whose first line names a Python in the home
     folder of a user, and that. shells: shell scripts without an ending. interpreted: names of
-    Python files that CMake code gives to an interpreter. tree_nodes: nodes of behaviour trees that C++ files register,
-    see tree_nodes.py; trees, modelled: see ReferenceFile.
+    Python files that CMake code gives to an interpreter. tree_nodes: what C++ files tell of nodes of behaviour trees,
+    see facts/cpp/tree_nodes.py; trees, modelled: see ReferenceFile.
     """
 
     name: str
@@ -292,7 +307,7 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     modules: tuple[str, ...] = ()
     plugins: tuple[tuple[str, PluginClass], ...] = ()
     registered: tuple[str, ...] = ()
-    tree_nodes: tuple[str, ...] = ()
+    tree_nodes: TreeNodes = TreeNodes()
     trees: tuple[str, ...] = ()
     modelled: tuple[str, ...] = ()
     setup: tuple[tuple[str, SetupFile], ...] = ()
@@ -345,6 +360,7 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     # packages, and with all that the source includes from elsewhere; where there are such bases, misspelt ones alone.
     undeclared: tuple[tuple[NameUse, tuple[str, ...], tuple[str, ...]], ...] = ()
     own_fields: tuple[FieldOfWorkspace, ...] = ()
+    values: tuple[ValueUse, ...] = ()
 
 
 # What no other package is asked about but one that has to do with it, see Workspace.groups: what its code says.
@@ -354,7 +370,7 @@ _INWARD = {
     if field.name in {
         "includes", "imports", "needed_headers", "reaches", "inner", "written_inner", "syntax", "allows", "problems",
         "uses", "members", "python_api", "cpp_api", "unresolved_receivers", "undefined", "own_calls", "unsearched",
-        "unincluded", "undeclared", "settings", "testing", "python_offer",
+        "unincluded", "undeclared", "settings", "testing", "python_offer", "values",
     }
 }  # fmt: skip
 
@@ -553,7 +569,7 @@ class PackageJoin:
         launches: list[tuple[str, str]] = []
         data_words: list[str] = []
         references, plugins, registered, setup, requirements, interfaces = [], [], [], [], [], []
-        tree_nodes: set[str] = set()
+        tree_nodes: list[TreeNodes] = []
         trees: set[str] = set()
         modelled: set[str] = set()
         for path in self.files:
@@ -576,7 +592,9 @@ class PackageJoin:
             if isinstance(facts, CppFile):
                 self.cpp[path] = facts
                 registered.extend(getattr(facts, "exports", ()))
-                tree_nodes.update(facts.tree_nodes)
+                if facts.tree_nodes is not None:
+                    beside = find_folder_role(self.strip_prefix(path)) is not None
+                    tree_nodes.append(mark_extended(facts.tree_nodes) if beside else facts.tree_nodes)
                 references.extend((path, r) for r in getattr(facts, "references", ()))
             elif isinstance(facts, PythonFile):
                 python[path] = facts
@@ -670,7 +688,7 @@ class PackageJoin:
             modules=tuple(sorted(modules)),
             plugins=tuple(plugins),
             registered=tuple(registered),
-            tree_nodes=tuple(sorted(tree_nodes)),
+            tree_nodes=merge_tree_nodes(tree_nodes),
             trees=tuple(sorted(trees)),
             modelled=tuple(sorted(modelled)),
             testing=tuple(path for path in self.cpp if not _OF_TESTS.isdisjoint(self.list_words(path))),
@@ -708,6 +726,7 @@ class PackageJoin:
             own_calls=tuple(self.list_own_calls(roles)),
             unresolved_receivers=self.unresolved_receivers,
             settings=tuple(self.list_settings(parameters, launches)),
+            values=tuple(self.list_values(parameters, launches)),
             distros=tuple(distros),
             requirements=tuple(requirements),
             unsearched=tuple(self.list_unsearched(roles)),
@@ -1107,39 +1126,68 @@ class PackageJoin:
 
     def list_settings(self, parameters: Iterable[str], launches: list[tuple[str, str]]) -> Iterator[SettingUse]:
         """Parameters of other packages' nodes that files of parameters and launch files set, of those that change."""
-        from .settings import NamedNode, list_launch_settings, list_named_nodes, list_settings, mentions_changing
+        from .settings import list_launch_settings, list_settings, mentions_changing
 
         changing = self.watched.changing_parameters
         if not changing:
             return
+        find_node = self.make_node_finder(launches)
+        words = self.read_words
+        wanted = [p for p in parameters if "ros__parameters" in words(p) and words(p) & changing.keys()]
+        for path, file in self.look(wanted, "flow_parameters").items():
+            for found in list_settings(file, changing, find_node):
+                yield self.make_setting_use(path, found)
+        for path, kind in launches:
+            for file in self.read_launches(path, kind) if mentions_changing(words(path), changing) else ():
+                for found in list_launch_settings(file, changing):
+                    yield self.make_setting_use(path, found)
+
+    def list_values(self, parameters: Iterable[str], launches: list[tuple[str, str]]) -> Iterator[ValueUse]:
+        """What files of parameters set for nodes and plugins of known packages, but for texts."""
+        from .parameter_values import find_type, show_value
+        from .settings import list_every_setting
+
+        find_node = self.make_node_finder(launches)
+        wanted = [path for path in parameters if "ros__parameters" in self.read_words(path)]
+        for path, file in self.look(wanted, "flow_parameters").items():
+            for found in list_every_setting(file, find_node):
+                type_ = find_type(found.value)
+                if found.package and type_ and not type_.startswith("string"):
+                    place = At(path, found.line), self.find_python_role(path)
+                    yield ValueUse(
+                        found.name, found.package, found.plugin, found.node, *place, type_, show_value(found.value)
+                    )
+
+    @cache_method
+    def read_words(self, path: str) -> set[str]:
+        """The words of a parameter or launch file."""
+        return set(self.facts(path).facts.words.split(" "))
+
+    def read_launches(self, path: str, kind: str) -> Iterable[LaunchFile]:
+        """A launch file as the message flow has it; none where it cannot be read."""
+        return self.look((path,), f"flow_{kind}").values()
+
+    def make_node_finder(
+        self, launches: list[tuple[str, str]]
+    ) -> Callable[[str, Collection[str]], NamedNode | None]:  # fmt: skip
+        """What gives the node that launch files start by a name, one of some packages first."""
+        from .settings import list_named_nodes
+
         started: dict[str, list[NamedNode]] = {}
 
         @cache
-        def read_words(path: str) -> set[str]:
-            return set(self.facts(path).facts.words.split(" "))
-
-        def read_launches(path: str, kind: str) -> Iterable[LaunchFile]:
-            return self.look((path,), f"flow_{kind}").values()
-
         def find_node(name: str, packages: Collection[str]) -> NamedNode | None:
             other = None
             for path, kind in launches:
-                if path not in started and mentions(name, read_words(path)):
-                    started[path] = [one for file in read_launches(path, kind) for one in list_named_nodes(file)]
+                if path not in started and mentions(name, self.read_words(path)):
+                    started[path] = [one for file in self.read_launches(path, kind) for one in list_named_nodes(file)]
                 for one in started.get(path, ()):
                     if one.name == name and one.package in packages:
                         return one
                     other = one if one.name == name else other
             return other
 
-        wanted = [p for p in parameters if "ros__parameters" in (words := read_words(p)) and words & changing.keys()]
-        for path, file in self.look(wanted, "flow_parameters").items():
-            for found in list_settings(file, changing, find_node):
-                yield self.make_setting_use(path, found)
-        for path, kind in launches:
-            for file in read_launches(path, kind) if mentions_changing(read_words(path), changing) else ():
-                for found in list_launch_settings(file, changing):
-                    yield self.make_setting_use(path, found)
+        return find_node
 
     def make_setting_use(self, path: str, found: Setting) -> SettingUse:
         """A value that a file sets, as rules ask of it."""

@@ -49,8 +49,32 @@ def mentions_changing(words: Collection[str], changing: Changing) -> bool:
 def list_settings(
     file: ParameterFile, changing: Changing, named: Callable[[str, Collection[str]], NamedNode | None]
 ) -> Iterator[Setting]:
-    """What a file of ROS 2 parameters sets. named: the node that goes by a name, one of some packages first, None where
-    no launch file tells."""
+    """What a file of ROS 2 parameters sets, of those that change. named: the node that goes by a name, one of some
+    packages first, None where no launch file tells."""
+    yield from _list_file_settings(file, changing.get, named)
+
+
+def list_every_setting(
+    file: ParameterFile, named: Callable[[str, Collection[str]], NamedNode | None]
+) -> Iterator[Setting]:
+    """All that a file of ROS 2 parameters sets. named: as for list_settings()."""
+    yield from _list_file_settings(file, lambda _: _EVERY, named)
+
+
+class _EveryPackage(frozenset[str]):
+    """A set that has every package and lists none."""
+
+    def __contains__(self, name: object) -> bool:
+        return True
+
+
+_EVERY = _EveryPackage()
+_Losers = Callable[[str], "frozenset[str] | None"]
+
+
+def _list_file_settings(
+    file: ParameterFile, find_losers: _Losers, named: Callable[[str, Collection[str]], NamedNode | None]
+) -> Iterator[Setting]:
     nodes: dict[tuple[str, ...], list[tuple[list[str], ParameterEntry]]] = {}
     for entry in file.entries:
         if "ros__parameters" in entry.path:
@@ -63,20 +87,20 @@ def list_settings(
         for key, entry in entries if len(key) == 2 and key[1] == "type" and _is_class(entry.value)
     }  # fmt: skip
     for path, entries in nodes.items():
-        yield from _list_settings(path[-1].rpartition("/")[2] if path else "", entries, controllers, changing, named)
+        yield from _list_settings(path[-1].rpartition("/")[2] if path else "", entries, controllers, find_losers, named)
 
 
 def _list_settings(
     node: str,
     entries: list[tuple[list[str], ParameterEntry]],
     controllers: Mapping[str, str],
-    changing: Changing,
+    find_losers: _Losers,
     named: Callable[[str, Collection[str]], NamedNode | None],
 ) -> Iterator[Setting]:
     plugins = {tuple(key[:-1]): entry.value for key, entry in entries if key[-1] == "plugin" and _is_class(entry.value)}
     others = tuple(sorted({get_plugin_package(name) for name in plugins.values()}))
     for key, entry in entries:
-        losers = changing.get(key[-1])
+        losers = find_losers(key[-1])
         if losers is None or key[-1] == "plugin":
             continue
         owner = next((tuple(key[:end]) for end in range(len(key) - 1, -1, -1) if tuple(key[:end]) in plugins), None)

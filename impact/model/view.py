@@ -9,14 +9,19 @@ import posixpath
 import re
 from collections.abc import Iterable, Iterator
 from functools import cached_property
+from itertools import chain
 from typing import NamedTuple
 
+from msgspec import structs
+
+from ...edges.groups import group_pairs
 from ...edges.memory import cache_method
 from ..conditions.cmake import list_tested_packages
 from ..facts.condition import Condition
 from ..targets.changes import DISTROS
 from ..targets.symbol import Symbol
 from ..targets.target import Provider
+from ..targets.tree_nodes import load_tree_nodes
 from .cmake.build import At, FoundPackage, Stop, is_for_tests
 from .on_target import INTERFACES, PACKAGE, UnresolvedUse, WorkspaceOnTarget
 from .package import ReferenceUse, find_folder_role
@@ -26,7 +31,11 @@ from .unknown_contents import UnknownContents
 from .workspace import Package
 
 # A file that Gazebo loads.
-_LIBRARY = re.compile(r"(?:lib)?([\w-]+)\.so")
+_LIBRARY = re.compile(r"(?:lib)?([\w-]+?)(?:\.so)?")
+# Packages and rosdep keys of what loads the plugins of worlds and models.
+_SIMULATOR = re.compile(r"gazebo(?:_dev)?|(?:lib)?(?:gazebo|ignition-gazebo|gz-sim)\d+(?:-dev)?|gz_sim_vendor")
+# How files end that describe robots and worlds.
+_DESCRIBES = (".xacro", ".urdf", ".sdf", ".world", ".xml")
 _DISTRO = re.compile(rf"(?<![A-Za-z0-9])(?:{'|'.join(DISTROS)})(?![A-Za-z0-9])")
 
 
@@ -211,7 +220,8 @@ class TargetView(WorkspaceOnTarget):
                 continue
             certain = self.is_sure(item.conditions)
             yield Need("import", item.module, providers, item.at, item.role, certain, certain and not item.lazy)
-        for use in linked.references:
+        named = ((use, use.at) for use in linked.references)
+        for use, at in chain(named, self._list_described(package)):
             reference = use.reference
             name = reference.package
             if reference.kind == "command":
@@ -219,30 +229,32 @@ class TargetView(WorkspaceOnTarget):
                 if "launch" in posixpath.basename(use.at.path):
                     yield from self._list_started(package, use)
                 continue
-            if not name and reference.kind == "plugin":
+            if not name and reference.kind in ("plugin", "library"):
                 name = self._find_loaded(package, use)
             if not name or name == package.name or "$" in name:
                 continue
-            known, of_launch, is_plugin = self.is_package(name), ".launch" in use.at.path, reference.kind == "plugin"
+            known, of_launch = self.is_package(name), ".launch" in use.at.path
+            is_plugin = reference.kind in ("plugin", "library")
             # What a launch file starts, or a description includes, cannot be anything else.
             included = not known and reference.kind == "file" and reference.name.endswith(".xacro")
             if not known and not (PACKAGE.match(name) and (of_launch or included)):
                 continue
             how = "plugin" if is_plugin else "launch"
-            if not of_launch and (included or (is_plugin and not reference.package)):
+            if at != use.at or (not of_launch and (included or (is_plugin and not reference.package))):
                 how = "setting"
             certain = not reference.conditional
-            yield Need(how, name, (Provider("ros", name),), use.at, use.role, certain, certain)
+            yield Need(how, name, (Provider("ros", name),), at, use.role, certain, certain)
 
     def _list_tool_needs(self, package: Package, tool: str) -> Iterator[Need]:
         """The tool that packages of a build type are built with: CMake itself, or a package of ROS, where neither a
         part of it is declared to build with, such as ament_cmake_core, nor what is brings it."""
-        line = next((one.line for one in package.manifest.exports if one.text == tool), package.manifest.line)
+        named = next((one for one in package.manifest.exports if one.text == tool), package.manifest)
+        at = At(package.linked.manifest_path, named.line, named.column)
         providers = tuple(self.providers.find_executable(tool)) if tool == "cmake" else self.find_cmake(tool)
         first = [name for name, kinds in self.collect_declared(package).items() if kinds & {"build", "buildtool"}]
         parts = any(name.startswith(tool) for name in first)
         if tool == "cmake" or not (parts or self.is_met(providers, self.list_transitive(first))):
-            yield Need("tool", tool, providers, At(package.linked.manifest_path, line), "build", True)
+            yield Need("tool", tool, providers, at, "build", True)
 
     def _list_environment_needs(self, package: Package) -> Iterator[Need]:
         """Environment variables of ROS that CMake tests, or stops without, where nothing that sets them comes along:
@@ -350,14 +362,14 @@ class TargetView(WorkspaceOnTarget):
         name, library = use.reference.name, _LIBRARY.fullmatch(use.reference.name)
         if ".launch" in use.at.path:
             return name.partition("/")[0] if "/" in name else ""  # nodelets are called `package/Class`
-        owners = self.offers.list_library_owners(library[1]) if library is not None else [get_plugin_package(name)]
+        owners = self._list_library_owners(library[1]) if library is not None else (get_plugin_package(name),)
         if len(owners) != 1 or name.startswith("transmission_interface/"):  # a word for whoever reads the description
             return ""
         (owner,) = owners
         along, started = self.list_installed_with(owner), self._list_started_packages(package)
-        if library is not None:  # Gazebo is started by a package that is called after it
-            word = owner.partition("_")[0]
-            return owner if any(one.partition("_")[0] == word for one in started & set(along)) else ""
+        if library is not None:
+            loaders = started.union(self._list_launched_packages(package)) - {owner}
+            return owner if any(self._loads_libraries(one, owner, use.reference.kind) for one in loaders) else ""
         if self.offers.has_plugin(owner, name) is False and owner not in self.workspace.packages:
             return ""  # it may be called after another package than its own
         # Who loads plugins brings their base class, in a package beside its own.
@@ -370,6 +382,64 @@ class TargetView(WorkspaceOnTarget):
         """Packages whose programs a package starts."""
         return frozenset(u.reference.package for u in package.linked.references if u.reference.kind == "executable")
 
+    @cache_method
+    def _list_launched_packages(self, package: Package) -> frozenset[str]:
+        """Packages of which a package starts launch files."""
+        files = (u.reference for u in package.linked.references if u.reference.kind in ("file", "sought"))
+        return frozenset(file.package for file in files if "launch" in file.name)
+
+    @cache_method
+    def _list_library_owners(self, library: str) -> tuple[str, ...]:
+        """The packages that make a library of this name: of the workspace, else released ones that are called after
+        it."""
+        own = tuple(one.name for one in self.workspace if library in _list_library_names(one))
+        return own or tuple(self.offers.list_library_owners(library))
+
+    def _loads_libraries(self, loader: str, owner: str, kind: str) -> bool:
+        """Whether a package that is started may load libraries of another: both bring the same simulator, or
+        BehaviorTree.CPP for those of nodes. Gazebo is also started by a package that is called after it."""
+        mine, theirs = self.list_transitive([owner]), self.list_transitive([loader])
+        if kind == "library":
+            return not load_tree_nodes().libraries.isdisjoint(mine & theirs)
+        word = owner.partition("_")[0]
+        return any(map(_SIMULATOR.fullmatch, mine & theirs)) or (loader in mine and loader.partition("_")[0] == word)
+
+    def _list_described(self, package: Package) -> Iterator[tuple[ReferenceUse, At]]:
+        """The plugins that descriptions of other packages of the workspace name which a package starts something with,
+        and where it names the description."""
+        for use in package.linked.references:
+            if use.reference.kind == "file" and use.reference.package != package.name:
+                for named in self._list_named_plugins(use.reference.package, use.reference.name):
+                    conditional = use.reference.conditional or named.reference.conditional
+                    reference = structs.replace(named.reference, conditional=conditional)
+                    yield ReferenceUse(reference, named.at, use.role), use.at
+
+    @cache_method
+    def _list_named_plugins(self, owner: str, name: str) -> tuple[ReferenceUse, ...]:
+        """What a file of a package of the workspace names of plugins, and the files that it includes."""
+        found: dict[ReferenceUse, None] = {}
+        todo, done = [(owner, name)], set[tuple[str, str]]()
+        while todo:
+            one = todo.pop()
+            package = self.workspace.packages.get(one[0])
+            if one in done or package is None or not one[1].endswith(_DESCRIBES):
+                continue
+            done.add(one)
+            path = posixpath.join(package.path, one[1])
+            for use in self._references_by_file.get(path, ()):
+                if use.reference.kind == "file":
+                    todo.append((use.reference.package or package.name, use.reference.name))
+                else:
+                    found[use] = None
+        return tuple(found)
+
+    @cached_property
+    def _references_by_file(self) -> dict[str, list[ReferenceUse]]:
+        """What descriptions of the workspace name of plugins, and the files that they include."""
+        uses = (use for package in self.workspace for use in package.linked.references)
+        kinds = ("file", "plugin")
+        return group_pairs((u.at.path, u) for u in uses if u.reference.kind in kinds and u.at.path.endswith(_DESCRIBES))
+
     def _list_started(self, package: Package, use: ReferenceUse) -> Iterator[Need]:
         """A program of a ROS package that a launch file runs by its name alone, and that the workspace does not make.
         Which key brings a program of the platform is not sure enough: several do, and other packages vendor it."""
@@ -380,6 +450,12 @@ class TargetView(WorkspaceOnTarget):
         if any(target.name == name for target in package.build.targets):
             return
         yield Need("shell", name, providers, use.at, use.role, certain, certain)
+
+
+def _list_library_names(package: Package) -> frozenset[str]:
+    """The names of the libraries that a package makes."""
+    targets = (one for one in package.build.targets if one.kind in ("library", "module"))
+    return frozenset(one.output_name or one.name for one in targets)
 
 
 def _find_role(conditions: Iterable[Condition]) -> str:

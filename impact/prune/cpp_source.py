@@ -14,7 +14,9 @@ from ..facts.cpp.parse import parse_source
 from ..rules.fix_actions import Edit
 from .conversions import spell_cpp
 
+_ANY_TYPE = re.compile(r"\bauto\b|\w+Base\b|\bros::(?:Publisher|Subscriber)\b|\bimage_transport\b")
 _POINTER = re.compile(r"Ptr\b|_ptr\s*<|\*")
+_QUOTED = re.compile(r"\"(?:[^\"\\\n]|\\.)*\"|//[^\n]*|/\*.*?\*/", re.DOTALL)
 _INCLUDE = re.compile(rb"(?m)^[ \t]*#[ \t]*include[ \t]*([<\"][^>\"\n]+[>\"])[^\n]*\n?")
 _SNAKE = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
@@ -114,9 +116,10 @@ class CppEditor:
         often."""
         package, _, name = old.partition("/")
         pattern = re.compile(
-            rf"(?<![\w:])(?:::)?(?:{package}::(?:msg::)?)?\b{name}(?P<end>(?:Const)?(?:Shared|Unique)?(?:Const)?Ptr|_)?\b"
+            rf"(?<![\w:.>])(?:::)?(?:{package}::(?:msg::)?)?\b{name}(?P<end>(?:Const)?(?:Shared|Unique)?(?:Const)?Ptr|_)?\b"
         )
-        text = self.data[start:end].decode("latin-1")
+        # A topic may be called like its type.
+        text = _QUOTED.sub(lambda match: " " * len(match[0]), self.data[start:end].decode("latin-1"))
         count = 0
         for match in pattern.finditer(text):
             spelt = spell_cpp(new, self.ros) + (match["end"] or "")
@@ -135,15 +138,19 @@ class CppEditor:
                 at = inner.end_byte
         return count + self.replace_type(at, call.end_byte, old, new)
 
-    def retype_member(self, line: int, name: str, old: str, new: str) -> int:
-        """Changes the type of a variable that is declared in a line. Gives how often."""
+    def retype_member(self, line: int, name: str, old: str, new: str) -> None:
+        """Changes the type of a variable that is declared in a line, where that names the message. Raises EditRefused
+        for one of another type."""
         for node in self._walk(self._root, KIND.field_declaration, KIND.declaration):
             first, last = self._find_line(node), bisect_right(self._starts, node.end_byte)
             if first <= line <= last and re.search(rf"\b{re.escape(name)}\b", self._spell_node(node)):
                 declared = node.child_by_field_name("type")
-                if declared is not None:
-                    return self.replace_type(declared.start_byte, declared.end_byte, old, new)
-        return 0
+                text = self._spell_node(declared) if declared is not None else ""
+                if declared is None or _ANY_TYPE.search(text):
+                    return
+                if not self.replace_type(declared.start_byte, declared.end_byte, old, new):
+                    raise EditRefused(f"`{name}` at {self.path}:{line} is of type `{text}`")
+                return
 
     def _find_parameter(self, listed: Node, place: int) -> Node:
         rows = [one for one in get_items(listed) if one.type.endswith("parameter_declaration")]

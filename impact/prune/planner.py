@@ -80,15 +80,15 @@ class _Made(NamedTuple):
 
 class Planner:
     """Plans for a workspace. report: its fields, with topics closed as the user knows. closed: these topics.
-    read: the bytes of a path, None where it cannot be read. length: of strings and arrays, to tell sizes."""
+    read: the bytes of a path, None where it cannot be read. length: of strings and arrays, to tell sizes.
+    find_definition: gives the text of the message `package/Name`."""
 
     def __init__(
         self, workspace: Workspace, topics: TopicReader, report: FieldReport, closed: Collection[str],
-        read: Callable[[str], bytes | None], length: int = 10,
-        find_released: Callable[[str], bytes | None] = lambda type_: None,
+        read: Callable[[str], bytes | None], length: int, find_definition: Callable[[str], bytes | None],
     ):  # fmt: skip
         self.workspace, self.topics, self.report = workspace, topics, report
-        self.closed, self.read, self.length, self.find_released = closed, read, length, find_released
+        self.closed, self.read, self.length, self.find_definition = closed, read, length, find_definition
         self.code, self.join = topics.join.code, topics.join
         # Lighter messages by the full one and what is kept.
         self._made: dict[tuple[str, tuple[str, ...]], dict[str, LightDefinition]] = {}
@@ -332,16 +332,6 @@ class Planner:
                     needs.add(make_full_name(plain, self._new_package).partition("/")[0])
         files = write_package(self._new_package, self.workspace.ros, names, needs - {self._new_package})
         return {f"{folder}/{name}": data for name, data in files.items()}
-
-    def find_definition(self, type_: str) -> bytes | None:
-        """The text of the message `package/Name`: of the workspace, else as find_released() has it."""
-        package, _, name = type_.partition("/")
-        found = self.workspace.packages.get(package)
-        if found is None:
-            return self.find_released(type_)
-        rows = (one for one in found.linked.interfaces if one.name == name and one.path.endswith(".msg"))
-        path = next((one.path for one in rows), "")
-        return self.read(path) if path else None
 
     def _measure(self, type_: str, texts: Mapping[str, bytes]) -> int:
         def find_section(name: str):

@@ -28,8 +28,8 @@ def convert(value, start):
 
 def main():
     """Records until it is stopped. Argument: the file to write."""
-    import roslib.message
-    import rospy
+    import roslib.message  # pyright: ignore[reportMissingImports]
+    import rospy  # pyright: ignore[reportMissingImports]
 
     start = time.time()
     known = set()

@@ -14,9 +14,8 @@ import msgspec
 from ...edges.console import UserError, escape
 from ...edges.documents import DocumentError, load_json
 from ...edges.files import write_file
-from ..analysis.fields import close
+from ..analysis.fields import KnownMessages, close
 from ..analysis.fix import make_unified_diff
-from ..analysis.message_files import ReleasedMessages
 from ..analysis.session import load_settings, open_tree
 from ..facts.store import Store
 from ..model.fields.report import FieldReport
@@ -66,10 +65,9 @@ def prepare(
             if name not in names:
                 raise UserError(f"{escape(name)}: no such topic; `rosimpact fields` lists those there are")
         rows = tuple(close(one) if one.topic in known else one for one in report.topics)
-        installed = ReleasedMessages(workspace.ros)
         planner = Planner(
             workspace, reader, FieldReport(rows, report.unknown), known, lambda each: _read(tree, each), length,
-            installed.find,
+            KnownMessages(workspace, tree).find,
         )  # fmt: skip
         plan = planner.plan(topics)
     return Prepared(plan, {each: _read(tree, each) or b"" for each in plan.changed})

@@ -73,8 +73,8 @@ def verify(
     root: Path, prepared: Prepared, *, commands: Sequence[str] = (), seconds: float = 10.0,
     say: Say = lambda text: None, keep: Path | None = None,
 ) -> Verification:  # fmt: skip
-    """Builds a workspace of ROS 1 before and after its pruning; with commands, runs these with both for some seconds,
-    and compares what is published. commands: each starts a node, or plays a recording: `package/executable arguments`, or
+    """Builds a workspace of ROS 1 before and after its pruning; with commands, runs both for some seconds, and compares
+    what is published. commands: each starts a node, or plays a recording: `package/executable arguments`, or
     anything of the shell. keep: a folder for both versions, a temporary one without. Raises UserError where something
     that it needs is missing."""
     if not prepared.plan.plans:
@@ -284,24 +284,29 @@ def compare(plans: Sequence[TopicPlan], before: _Run, after: _Run, commands: Seq
     for key in sorted({*before.messages, *after.messages}):
         first, second = before.messages.get(key, []), after.messages.get(key, [])
         paths = keep.get(key[0])
-        old, new = ([_spell(project(one.fields, paths)) for one in rows] for rows in (first, second))
+        old, new = ([_spell(keep_paths(one.fields, paths)) for one in rows] for rows in (first, second))
         how, difference = find_difference(old, new)
-        sizes = [sum(one.size for one in rows) / len(rows) if rows else 0.0 for rows in (first, second)]
-        results.append(TopicResult(*key, len(old), len(new), *sizes, how, difference))
+        results.append(
+            TopicResult(*key, len(old), len(new), _average(first), _average(second), how, difference)
+        )
     if not results:
         return Verification("nothing was published in either run; give it more --seconds, or other commands")
     return Verification("", tuple(results), exits)
+
+
+def _average(messages: Sequence[_Message]) -> float:
+    return sum(one.size for one in messages) / len(messages) if messages else 0.0
 
 
 def _name_exit(status: int | None) -> str:
     return "no exit" if status is None else str(status)
 
 
-def project(fields: Any, paths: Sequence[str] | None) -> Any:
+def keep_paths(fields: Any, paths: Sequence[str] | None) -> Any:
     """The part of a message that some paths keep; all of it for None. `seq` of headers counts messages, and is left
     out."""
     if isinstance(fields, list):
-        return [project(one, paths) for one in fields]
+        return [keep_paths(one, paths) for one in fields]
     if not isinstance(fields, dict):
         return fields
     found = {}
@@ -309,11 +314,11 @@ def project(fields: Any, paths: Sequence[str] | None) -> Any:
         if name == "seq" and "frame_id" in fields:
             continue
         if paths is None or name in paths:
-            found[name] = project(value, None)
+            found[name] = keep_paths(value, None)
             continue
         inner = [path.partition(".")[2] for path in paths if path.startswith(f"{name}.")]
         if inner:
-            found[name] = project(value, inner)
+            found[name] = keep_paths(value, inner)
     return found
 
 

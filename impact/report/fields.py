@@ -8,7 +8,10 @@ from typing import Any
 import msgspec
 
 from ...edges.console import format_count, format_json
+from ..analysis.bags import BagFacts
+from ..analysis.fields import FieldAnswer
 from ..model.fields.report import FieldAt, FieldReport, PublisherFields, SubscriberFields, TopicFields
+from .bags import format_bytes
 from .columns import UNBROKEN, LinePart, lay_out
 from .schemas import SCHEMA
 from .style import Style
@@ -17,12 +20,18 @@ WIDE = Style(width=UNBROKEN)
 _MOST = 12
 
 
-def render_fields_text(report: FieldReport, everything: bool = False, style: Style = WIDE) -> str:
+def render_fields_text(answer: FieldAnswer, everything: bool = False, style: Style = WIDE) -> str:
     """The topics, each with who reads and sets what. everything: fields that are read are named one by one, and no list
     is cut."""
+    report = answer.report
     lines: list[str] = []
     for topic in report.topics:
-        lines += [*_render_topic(topic, everything, style), ""]
+        lines += _render_topic(topic, everything, style)
+        size = answer.sizes.get((topic.topic, topic.type))
+        if size is not None and topic.unread:
+            text = f"{size.unread:,} B of {size.full:,} B in each message"
+            lines += lay_out([LinePart("saves", "good"), LinePart(text)], style, 2, 6)
+        lines.append("")
     for topic, type_ in report.unknown if everything else ():
         lines.append(f"{topic}  {type_}: its fields are not known")
     lines += list(lay_out([LinePart(summarize_fields(report))], style, 0, 2))
@@ -103,7 +112,28 @@ def _drop_equal(rows: Sequence[Any]) -> list[Any]:
     return list({(one.path, one.line): one for one in reversed(rows)}.values())[::-1]
 
 
-def render_fields_json(report: FieldReport, version: str) -> str:
-    """The whole report."""
-    tool = {"name": "rosimpact", "version": version}
-    return format_json({"schema": SCHEMA, "tool": tool, **msgspec.to_builtins(report)}) + "\n"
+def render_savings(report: FieldReport, bag: BagFacts, style: Style = WIDE) -> str:
+    """What a recording says that the fields take which nobody reads."""
+    rows = {(one.topic, one.type): one for one in report.topics if one.unread}
+    lines: list[str] = []
+    for topic in bag.topics:
+        known = rows.get((topic.topic, topic.type))
+        wasted = sum(field.bytes for field in topic.fields if known is not None and field.field in known.unread)
+        if known is not None and wasted:
+            each = f"{wasted:,.0f} B of {topic.bytes.mean:,.0f} B in each message"
+            rate = f", {format_bytes(wasted * topic.rate)}/s" if topic.rate is not None else ""
+            pieces = [LinePart(topic.topic, "bold"), LinePart("read by nobody here:", "good")]
+            names = LinePart(f"{_list_names(known.unread, False)}: {each}{rate}")
+            lines += lay_out([*pieces, names], style, 0, 4)
+    return "\n" + "\n".join(lines) + "\n" if lines else ""
+
+
+def render_fields_json(answer: FieldAnswer, version: str) -> str:
+    """The whole report; `bytes` and `unread_bytes` of topics whose messages' size is known."""
+    document = {"schema": SCHEMA, "tool": {"name": "rosimpact", "version": version}}
+    document.update(msgspec.to_builtins(answer.report))
+    for topic in document["topics"]:
+        size = answer.sizes.get((topic["topic"], topic["type"]))
+        if size is not None:
+            topic.update(bytes=size.full, unread_bytes=size.unread)
+    return format_json(document) + "\n"

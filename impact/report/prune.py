@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from ...edges.console import format_count, format_json
 from ..prune.planner import PrunePlan, TopicPlan
+from ..prune.verify import Verification
 from .columns import LinePart, lay_out
 from .fields import WIDE
 from .schemas import SCHEMA
@@ -53,3 +54,24 @@ def render_plan_json(plan: PrunePlan, version: str) -> str:
         "created": sorted(plan.created),
     }
     return format_json(document) + "\n"
+
+
+def render_verification(done: Verification, style: Style = WIDE) -> str:
+    """What was compared, topic by topic, and the first differences."""
+    if done.failure:
+        return f"{done.failure}\n"
+    lines: list[str] = []
+    for one in done.topics:
+        counts = f"{one.before} messages before, {one.after} after"
+        sizes = f"{one.bytes_before:,.0f} B a message before, {one.bytes_after:,.0f} B after"
+        verdict = LinePart("differs", "error") if one.difference else LinePart(f"equal {one.how}", "good")
+        head = [LinePart(one.topic, "bold"), LinePart(f"of {one.node}"), verdict, LinePart(counts), LinePart(sizes)]
+        lines += lay_out(head, style, 0, 4)
+        lines += lay_out([LinePart(one.difference)], style, 4, 4) if one.difference else []
+    for text in done.exits:
+        lines += lay_out([LinePart(text, "error")], style, 0, 4)
+    if not done.topics:
+        lines.append("both versions build; with --run, what they do is compared too")
+    else:
+        lines += ["", "both versions do the same" if done.is_equal else "the versions differ"]
+    return "\n".join(lines) + "\n"

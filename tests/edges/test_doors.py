@@ -7,6 +7,7 @@ ROOT = Path(__file__).parents[2]
 ROOMS = ("impact", "corpus", "classifier", "edges")
 """databuild makes the data that is shipped, from material of whoever runs it."""
 
+_MEASURED = "files in the temporary folder of a measurement; nodes run without rosimpact"
 _SHIPPED = "data that is shipped beside the module"
 DOORS = {
     "open": {
@@ -15,6 +16,7 @@ DOORS = {
         "impact/targets/machine/loader.py": "a descriptor of open_regular()",
         "corpus/report.py": "a descriptor of open_regular()",
         "corpus/sources/ros_answers.py": "a descriptor of open_regular()",
+        **dict.fromkeys(("impact/measure/children.py", "impact/measure/nodes/node_loop.py"), _MEASURED),
     },
     "os.open": {
         "edges/files.py": "the door",
@@ -51,8 +53,11 @@ DOORS = {
     "eval": {},
     "exec": {},
     "os.system": {},
-    "subprocess.run": {"impact/targets/capture.py": "dpkg-query and the like, without words of a workspace"},
-    "subprocess.Popen": {},
+    "subprocess.run": {
+        "impact/targets/capture.py": "dpkg-query and the like, without words of a workspace",
+        "impact/measure/children.py": "ip, tc, cmake and ROS's generators, which get fields and types alone",
+    },
+    "subprocess.Popen": {"impact/measure/children.py": "measuring nodes and their master"},
     "pickle.loads": {"edges/processes.py": "what our own processes send each other"},
     "marshal.loads": {"classifier/features.py": "a nameless temporary file of one process"},
     "yaml.load": dict.fromkeys(("impact/targets/providers/providers.py", "impact/targets/snapshot.py"), _SHIPPED),

@@ -145,9 +145,31 @@ def test_what_build_tools_refuse_is_a_problem_with_its_line(data, expected):
         assert problem.message.startswith(message)
 
 
+COLUMNS = [
+    ("  <build-depend>a</build-depend>", 4),
+    ("<depend>a</depend><depend>a</depend>", 9),
+    ("  <maintainer email='nobody'>A</maintainer>", 30),
+    (" <depend>a</depend><", 21),
+]
+
+
+@pytest.mark.parametrize(("line", "column"), COLUMNS)
+def test_problems_have_the_column_of_their_element(line, column):
+    found = extract(manifest(3, line)).problems
+    assert found[0].column == column
+
+
+def test_exports_and_the_name_have_their_columns():
+    facts = extract(manifest(3, "<export>", "  <build_type> ament_cmake</build_type>", "  <rviz a='1'",
+                             "    plugin='${prefix}/x.xml'/>", "</export>"))  # fmt: skip
+    assert (facts.line, facts.column) == (3, 9)
+    assert [(e.line, e.column) for e in facts.exports] == [(9, 16), (10, 4)]
+    assert facts.exports[1].places == {"a": (10, 12), "plugin": (11, 13)}
+
+
 def test_unknown_tags_are_listed_and_plain_ones_still_understood():
     facts = extract(manifest(2, "<build-depend>a</build-depend>", "<rosdoc>b</rosdoc>"))
-    assert facts.unknown_tags == (("build-depend", "a", 8), ("rosdoc", "b", 9))
+    assert facts.unknown_tags == (("build-depend", "a", 8, 2), ("rosdoc", "b", 9, 2))
     assert pairs(facts) == [("a", "build", "build-depend", 8)]
 
 

@@ -160,6 +160,9 @@ REFUSED = {
     "no listing": ("use(state->level);", {"msgs/CMakeLists.txt": "project(msgs)\n"}, "does not name State.msg"),
     "an alias": ("use(state->level);", {"before": "using Some = msgs::State;", "parameter": "const Some& state"},
                  "names the type otherwise"),
+    "waited for": ("use(state->level);",
+                   {"before": "void once() { ros::topic::waitForMessage<msgs::State>(\"state\"); }"},
+                   "nodes/src/hear.cpp:4 waits for a message, which is not followed"),
     "any type": ("use(state->level);", {"nodes/src/any.cpp": (
         '#include <topic_tools/shape_shifter.h>\nvoid any(const topic_tools::ShapeShifter::ConstPtr& m) {}\n'
         'int main(int argc, char** argv) { ros::init(argc, argv, "any"); ros::NodeHandle nh;\n'
@@ -247,6 +250,19 @@ ament_package()
     "nodes/src/hear.cpp": ROS2_HEAR,
     "nodes/src/talk.cpp": ROS2_TALK,
 }
+
+
+def test_a_topic_that_is_called_like_its_type(tmp_path):
+    files = {name: text.replace('"state"', '"State"') for name, text in ROS2.items()}
+    found = added(prepare(write(tmp_path, files)))
+    assert 'Talk() : Node("talk") { pub_ = create_publisher<msgs::msg::StateLight>("State", 10); }' in found
+
+
+def test_a_publisher_whose_type_has_another_name(tmp_path):
+    text = ROS2_TALK.replace("rclcpp::Publisher<msgs::msg::State>::SharedPtr pub_", "Out pub_")
+    text = text.replace("class Talk", "using Out = rclcpp::Publisher<msgs::msg::State>::SharedPtr;\nclass Talk")
+    (refusal,) = prepare(write(tmp_path, {**ROS2, "nodes/src/talk.cpp": text})).plan.refusals
+    assert refusal.reason == "`pub_` at nodes/src/talk.cpp:14 is of type `Out`"
 
 
 def test_ros2(tmp_path):
@@ -349,8 +365,9 @@ def test_topics_with_equal_needs_share_a_message(tmp_path):
     brain.write_text(text.replace("say(describe(report));", "say(report.stops.empty() ? \"none\" : \"some\");"))
     log = tmp_path / "fleet/src/fleet_log/scripts/track.py"
     log.write_text(log.read_text().replace(
-        'labels = [stop.place.label for stop in report.stops]\n    said.publish("archive %d %s %s" % '
-        "(report.state, report.driver, labels))", 'said.publish("archive %d" % len(report.stops))'
+        'labels = [stop.place.label for stop in report.stops]\n    '
+        'said.publish(f"archive {report.state} {report.driver} {labels}")',
+        'said.publish(f"archive {len(report.stops)}")',
     ))  # fmt: skip
     plans = {topic: plan.light for plan in prepare(tmp_path / "fleet").plan.plans for topic in plan.topics}
     assert plans["/archive"] == plans["/spare_report"] == "fleet_msgs/ReportArchiveLight"

@@ -255,19 +255,25 @@ def test_what_is_left_alone(row: Row, tmp_path: Path):
     assert said(written(tmp_path / "b", spoilt), row.rule, tmp_path / "cache") == {row.told}
 
 
-def test_parameters_that_one_line_loads_are_told_together(tmp_path: Path):
+@pytest.mark.parametrize(
+    ("rosparam", "file", "lines"),
+    [
+        ('<rosparam file="$(find quay)/config/quay.yaml"/>', "config/quay.yaml", [1, 2, 3]),
+        ("<rosparam>{rope: 3, sail: 2, store: {tar: 1}}</rosparam>", "launch/quay.launch", [3]),
+    ],
+)
+def test_parameters_are_told_where_they_are_set_those_of_one_line_together(
+    rosparam: str, file: str, lines: list[int], tmp_path: Path
+):
     source = (
         'int main(int c, char** v) {\n  ros::init(c, v, "chandler");\n  ros::NodeHandle pnh("~");\n  ros::spin();\n}\n'
     )
-    launch = (
-        '<launch>\n  <node pkg="quay" type="chandler" name="chandler">\n'
-        '    <rosparam file="$(find quay)/config/quay.yaml"/>\n  </node>\n</launch>\n'
-    )
+    launch = f'<launch>\n  <node pkg="quay" type="chandler" name="chandler">\n    {rosparam}\n  </node>\n</launch>\n'
     files = {**chandler(source, launch), "quay/config/quay.yaml": "rope: 3\nsail: 2\nstore: {tar: 1}\n"}
     report = check(written(tmp_path / "ws", files), OPTIONS._replace(cache=tmp_path / "cache"))
-    told = [(f.line, f.message) for f in report.findings if f.rule == "unknown-parameter"]
-    assert [line for line, _ in told] == [3]
-    assert told[0][1].endswith("and 2 more that this line loads")
+    told = [(f.path.endswith(file), f.line, f.message) for f in report.findings if f.rule == "unknown-parameter"]
+    assert [(here, line) for here, line, _ in told] == [(True, line) for line in lines]
+    assert told[0][2].endswith("and 2 more that this line loads") == (len(lines) == 1)
 
 
 RENAMED = {

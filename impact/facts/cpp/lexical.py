@@ -19,7 +19,7 @@ import msgspec
 
 from ..condition import Condition
 from ..place import Problem, Reference
-from .tree_nodes import RegisteredNode, list_tree_nodes
+from .tree_nodes import RegisteredNode, TreeNodes, list_node_classes, list_tree_nodes
 
 _SLASHES = re.compile("/+")
 
@@ -59,7 +59,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     pointer or reference. made: classes of which it makes objects by `new`, make_shared() or make_unique(). parents:
     derived classes and aliases of types, with the words of their bases or of what they stand for. initializes: a
     constructor may initialize members, or a container makes elements (`emplace_back`). code: a digest of all but
-    comments, literals, includes and blanks. tree_nodes: names of nodes of behaviour trees, see tree_nodes.py.
+    comments, literals, includes and blanks. tree_nodes: what tree_nodes.py finds; None for nothing.
     """
 
     includes: tuple[Include, ...]
@@ -82,7 +82,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     parents: tuple[tuple[str, str], ...] = ()
     initializes: bool = False
     code: str = ""
-    tree_nodes: tuple[str, ...] = ()
+    tree_nodes: TreeNodes | None = None
 
     @property
     def types(self) -> tuple[str, ...]:
@@ -337,6 +337,14 @@ class Scan:
         """The nodes of behaviour trees that the file registers."""
         return list_tree_nodes(self.text, self.visible, lambda offset: self.find_segment(offset)[2])
 
+    def read_tree_nodes(self) -> TreeNodes | None:
+        """The nodes of behaviour trees that the file registers, and the classes and functions that tell their ports;
+        None where it has none."""
+        classes, functions = list_node_classes(self.text, self.visible)
+        nodes = {msgspec.structs.replace(node, conditions=()): None for node in self.list_tree_nodes()}
+        found = TreeNodes(tuple(sorted(nodes, key=repr)), classes, functions)
+        return found if nodes or classes or functions else None
+
     def find_conditions(self, offset: int) -> tuple[Condition, ...] | None:
         """The conditions around an offset, None inside a directive."""
         start, _, conditions = self.find_segment(offset)
@@ -568,7 +576,7 @@ def extract(data: bytes) -> CppFile:
         parents=parents,
         initializes="emplace" in tokens_text or _INITIALIZES.search(visible) is not None,
         code=hashlib.sha1(visible.encode().translate(None, b" \t\r\n")).hexdigest()[:16],
-        tree_nodes=tuple(sorted({node.name for node in scanned.list_tree_nodes()})),
+        tree_nodes=scanned.read_tree_nodes(),
     )
 
 

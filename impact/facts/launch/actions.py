@@ -70,7 +70,7 @@ class Action(msgspec.Struct, frozen=True, array_like=True, gc=False):
     | composable | package, plugin, name, namespace | remap, parameter, parameter-file |
     | load | container: its full name, or container-node: the name of a container of the same file, before the
       namespaces that are pushed | composable |
-    | include | file, namespace, pass-all (ROS 1), clear | pass, environment |
+    | include | file, namespace, pass-all (ROS 1), clear, optional: only if it is there | pass, environment |
     | group | namespace (ROS 1), scoped, forwarding, clear | any |
     | namespace | namespace: pushed for what follows | |
     | remap | from, to | |
@@ -98,12 +98,14 @@ class Action(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class LaunchFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """language: `xml`, `yaml` or `python`. generation: 1 or 2, 0 where an XML file could be of either."""
+    """language: `xml`, `yaml` or `python`. generation: 1 or 2, 0 where an XML file could be of either. imports: what a
+    file in Python imports, dotted, other than of launch itself."""
 
     language: str
     generation: int
     actions: tuple[Action, ...] = ()
     problems: tuple[Problem, ...] = ()
+    imports: tuple[str, ...] = ()
 
 
 SHOWN = 120
@@ -147,3 +149,7 @@ def make_named(kind: str, name: Value, *rest: Value) -> ValuePart:
 def make_other(source: str) -> ValuePart:
     """A piece that could not be read."""
     return ValuePart("other", " ".join(source.split())[:SHOWN])
+
+
+BRIDGE_FILE: Value = (ValuePart("find", "ros_gz_bridge"), ValuePart("text", "/launch/ros_gz_bridge.launch.py"))
+"""What the action of ros_gz_bridge includes."""

@@ -11,6 +11,7 @@ import re
 from ..markup import TOKEN, Document, Element, unescape
 from ..place import Problem
 from .actions import (
+    BRIDGE_FILE,
     Action,
     ActionCondition,
     LaunchFile,
@@ -279,6 +280,10 @@ class _Reader:
         conditions = tuple(
             ActionCondition(kind, values[kind], line) for kind in ("if", "unless") if kind in values
         )
+        if tag == "ros_gz_bridge":
+            given = ((("name", make_literal(name)), ("value", value)) for name, value in values.items())
+            passed = tuple(Action("pass", line, pair) for pair in given)
+            return (Action("include", line, (("file", BRIDGE_FILE),), conditions, passed),)
         kind = _KINDS.get(tag)
         if kind is None:
             text = make_literal(f"<{tag}>")

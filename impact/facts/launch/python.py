@@ -1,33 +1,46 @@
 """Launch files in Python to the facts of flow_launch: what generate_launch_description() gives, without running it."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from ..place import Problem
 from ..python.source import read
 from .actions import Action, LaunchFile
 from .parameter_files import DEEPEST
-from .python_calls import make
+from .python_moveit import make
 from .python_values import TooMuch
-from .python_walk import MOST_STEPS, Walker
+from .python_walk import MOST_STEPS, HelperModule, Walker
 
 
-def extract(data: bytes) -> LaunchFile:
+def extract(data: bytes, helpers: Mapping[str, tuple[bytes, str]] | None = None) -> LaunchFile:
     """The facts of a launch file in Python. Never raises.
 
-    A file without generate_launch_description() says so as a problem.
+    A file without generate_launch_description() says so as a problem. helpers: modules that it may import, by their
+    dotted names: the source, and the package that relative imports in it are of.
     """
     source = read(data)
     problems = source.problems
     if source.tree is None:
         return LaunchFile("python", 2, (), problems or (Problem(1, "not parsed: is not Python 3"),))
+    parsed = {name: (read(text).tree, package) for name, (text, package) in (helpers or {}).items()}
+    modules = {name: HelperModule(tree, package) for name, (tree, package) in parsed.items() if tree is not None}
     try:
-        actions, more = Walker(make).launch(source.tree)
+        walker = Walker(make, modules)
+        actions, more = walker.launch(source.tree)
         _measure(actions)
-        return LaunchFile("python", 2, actions, (*problems, *more))
+        imports = tuple(path for path in walker.imports if path.partition(".")[0] not in _KNOWN)
+        return LaunchFile("python", 2, actions, (*problems, *more), imports)
     except RecursionError:
         return LaunchFile("python", 2, (), (*problems, Problem(1, "nested too deeply to be read")))
     except TooMuch as error:
         return LaunchFile("python", 2, (), (*problems, Problem(1, str(error))))
+
+
+# Packages whose names python_calls.py knows, wherever they are.
+_KNOWN = frozenset((
+    "ament_index_python", "launch", "launch_param_builder", "launch_ros", "launch_xml", "launch_yaml",
+    "moveit_configs_utils", "nav2_common", "os", "pathlib", "sys", "typing", "yaml",
+))  # fmt: skip
 
 
 def _measure(actions: tuple[Action, ...]) -> None:

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple
 
 from .actions import (
+    BRIDGE_FILE,
     Action,
     ActionCondition,
     Value,
@@ -62,7 +63,7 @@ class LaunchCall(NamedTuple):
 
     @property
     def line(self) -> int:
-        return self.node.lineno
+        return self.walker.locate(self.node)
 
     @property
     def unknown(self) -> Unknown:
@@ -284,6 +285,16 @@ def _include(call: LaunchCall) -> Any:
         return call.group(call.list_actions(source))
     passed = call.list_pairs("launch_arguments", "pass", ("name", "value"), call.get(1, "launch_arguments"))
     return call.make_action("include", call.list_attributes(("file", source)), passed)
+
+
+def _include_bridge(call: LaunchCall) -> Any:
+    """RosGzBridge of ros_gz_bridge, which includes a launch file with all that it is given."""
+    passed = [
+        Action("pass", call.line, (("name", make_literal(name)), ("value", call.make_text(value))))
+        for name, value in call.keywords.items()
+        if name != "condition" and is_given(value)
+    ]
+    return call.make_action("include", (("file", BRIDGE_FILE),), passed)
 
 
 def _run_opaque_function(call: LaunchCall) -> Any:
@@ -554,6 +565,7 @@ MAKERS: dict[str, Maker] = {
     "GroupAction": _group,
     "IncludeLaunchDescription": _include,
     "OpaqueFunction": _run_opaque_function,
+    "RosGzBridge": _include_bridge,
     **dict.fromkeys(("TimerAction", "RosTimer"), _make_timer),
     "RegisterEventHandler": _register,
     **dict.fromkeys(

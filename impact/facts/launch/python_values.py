@@ -137,15 +137,40 @@ class Object(msgspec.Struct, eq=False):
 
 
 class LaunchScope(msgspec.Struct, eq=False):
-    """Names and what they stand for."""
+    """Names and what they stand for. module: of the outermost scope of another file, its dotted name."""
 
     parent: LaunchScope | None
     names: dict[str, Any] = {}
+    module: str = ""
+
+    def find_module(self) -> str:
+        """The dotted name of the file that it is in; empty for the launch file itself."""
+        return self.module if self.parent is None else self.parent.find_module()
 
     def look(self, name: str) -> Any:
         if name in self.names or self.parent is None:
             return self.names.get(name)
         return self.parent.look(name)
+
+
+class MoveItFile(NamedTuple):
+    """A YAML file of a MoveIt configuration. below: the parameter that its content is under, None for none; on_disk:
+    whether it is read hangs on what is there."""
+
+    below: Value | None
+    file: Value
+    on_disk: bool = False
+
+
+class MoveItConfig(msgspec.Struct, eq=False):
+    """A MoveItConfigsBuilder, or what it builds (is_whole). path: what its methods are called below; folder: of its
+    package; files: by section."""
+
+    path: str
+    folder: Value
+    files: dict[str, list[MoveItFile]] = {}
+    is_whole: bool = False
+    attributes: dict[str, Any] = {}
 
 
 class Context(NamedTuple):

@@ -7,8 +7,8 @@ what is only known at launch are walked both, and what they add stands under the
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
 
 from ....edges.dispatch import collect_node_methods
 from ..place import Problem
@@ -38,6 +38,7 @@ from .python_values import (
     LaunchModule,
     LaunchScope,
     Method,
+    MoveItConfig,
     Object,
     Pairs,
     TextValue,
@@ -63,11 +64,28 @@ DEEPEST_CALL = 24
 ENTRIES = ("generate_launch_description", "generate_test_description")
 
 
-class Walker:
-    """One walk through a file. make: what a call of an imported name makes, see python_calls.make()."""
+class HelperModule(NamedTuple):
+    """A module that a launch file imports. package: relative imports in it are of this module's."""
 
-    def __init__(self, make: Callable[[Walker, ast.Call, str, list[Any], dict[str, Any]], Any]) -> None:
+    tree: ast.Module
+    package: str
+
+
+class Walker:
+    """One walk through a file. make: what a call of an imported name makes, see python_calls.make(). helpers: modules
+    that it imports, by their dotted names. imports: after the walk all that was imported, in order."""
+
+    def __init__(
+        self,
+        make: Callable[[Walker, ast.Call, str, list[Any], dict[str, Any]], Any],
+        helpers: Mapping[str, HelperModule] | None = None,
+    ) -> None:
         self.make = make
+        self.helpers = helpers or {}
+        self.imports: dict[str, None] = {}
+        self._entered: dict[str, LaunchScope] = {}
+        # The line that leads out of the launch file, 0 within it; and the last line of a call in it.
+        self.outside = self.last_line = 0
         self.module = LaunchScope(None)
         self.module.names["__file__"] = TextValue((ValuePart("filename"),))
         self.scope = self.module
@@ -176,8 +194,8 @@ class Walker:
         decided = self.evaluate_test(statement.test)
         if isinstance(decided, bool):
             return self.walk_block(statement.body if decided else statement.orelse)
-        yes = ActionCondition("if", decided, statement.lineno)
-        no = ActionCondition("unless", decided, statement.lineno)
+        yes = ActionCondition("if", decided, self.locate(statement))
+        no = ActionCondition("unless", decided, self.locate(statement))
         before = dict(self.scope.names)
         body_jumps = self.walk_under(statement.body, yes)
         after_body, self.scope.names = self.scope.names, dict(before)
@@ -202,7 +220,7 @@ class Walker:
         if turns is None:
             over = f"for {get_source(statement.target)} in {get_source(statement.iter)}"
             self.bind_unknown(statement.target)
-            self.walk_under(statement.body, ActionCondition("each", (make_other(over),), statement.lineno))
+            self.walk_under(statement.body, ActionCondition("each", (make_other(over),), self.locate(statement)))
         else:
             for value, extra in map(split_conditions, turns):
                 self.bind(statement.target, value)
@@ -224,7 +242,7 @@ class Walker:
     def run_While(self, statement: ast.While) -> None:
         self.walk_under(
             statement.body,
-            ActionCondition("each", (make_other(f"while {get_source(statement.test)}"),), statement.lineno),
+            ActionCondition("each", (make_other(f"while {get_source(statement.test)}"),), self.locate(statement)),
         )
 
     def run_With(self, statement: ast.With) -> bool:
@@ -245,6 +263,10 @@ class Walker:
 
     run_AsyncFunctionDef = run_FunctionDef
 
+    def locate(self, node: ast.stmt | ast.expr) -> int:
+        """The line of the launch file that something is at: what stands in another file is where that is called."""
+        return self.outside or node.lineno
+
     def run_ClassDef(self, statement: ast.ClassDef) -> None:
         type_ = LaunchClass()
         for inner in statement.body:
@@ -253,13 +275,56 @@ class Walker:
         self.scope.names[statement.name] = type_
 
     def run_Import(self, statement: ast.Import | ast.ImportFrom) -> None:
-        self.scope.names.update((name, LaunchModule(path)) for name, path in list_imported(statement))
+        if isinstance(statement, ast.Import):
+            self.imports.update(dict.fromkeys(alias.name for alias in statement.names))
+        for name, path in list_imported(statement):
+            path = self._make_absolute(path)
+            self.imports[path] = None
+            found = self._find_helper(path, self.locate(statement))
+            if name == "*":
+                self.scope.names.update(found.names if isinstance(found, LaunchScope) else {})
+            else:
+                self.scope.names[name] = LaunchModule(path) if isinstance(found, LaunchScope) else found
+
+    def _make_absolute(self, path: str) -> str:
+        """A dotted path that may be relative to the file it stands in, from the root."""
+        up = len(path) - len(path.lstrip("."))
+        helper = self.helpers.get(self.scope.find_module())
+        if not up or helper is None:
+            return path
+        base = helper.package.split(".")
+        return ".".join((*base[: max(0, len(base) - up + 1)], path[up:])).strip(".")
+
+    def _find_helper(self, path: str, line: int) -> Any:
+        """What a dotted path stands for: the scope of a module that is there, what it has under a name, or else the
+        path itself. line: of what asks for it."""
+        if path in self.helpers:
+            return self._enter(path, line)
+        module, _, name = path.rpartition(".")
+        if module in self.helpers:
+            found = self._enter(module, line).names.get(name)
+            if found is not None:
+                return found
+        return LaunchModule(path)
+
+    def _enter(self, module: str, line: int) -> LaunchScope:
+        """The names of a module, which is run when it is first asked for."""
+        if module not in self._entered:
+            scope = self._entered[module] = LaunchScope(None, {}, module)
+            outer = self.scope, self.conditions, self.returns, self.base, self.outside
+            self.scope, self.conditions, self.returns, self.base, self.outside = scope, [], [], 0, self.outside or line
+            try:
+                self.walk_block(self.helpers[module].tree.body)
+            finally:
+                self.scope, self.conditions, self.returns, self.base, self.outside = outer
+        return self._entered[module]
 
     run_ImportFrom = run_Import
 
     def evaluate_test(self, node: ast.expr) -> bool | Value:
         """Whether an expression is true: known, or a value that tells at launch."""
-        return self.find_truth(self.evaluate(node), node)
+        value = self._join_conditions(node) if isinstance(node, ast.BoolOp) else self.evaluate(node)
+        return self.find_truth(value, node)
 
     def find_truth(self, value: Any, node: ast.AST) -> bool | Value:
         if isinstance(value, LaunchConstant):
@@ -351,12 +416,15 @@ class Walker:
         receiver = self.evaluate(node.value)
         name = node.attr
         if isinstance(receiver, LaunchModule):
-            return LaunchModule(f"{receiver.path}.{name}")
+            found = self._find_helper(f"{receiver.path}.{name}", self.locate(node))
+            return LaunchModule(f"{receiver.path}.{name}") if isinstance(found, LaunchScope) else found
         if isinstance(receiver, Object):
             if name in receiver.attributes:
                 return receiver.attributes[name]
             method = receiver.type.methods.get(name)
             return Unknown(get_source(node)) if method is None else method._replace(self=receiver)
+        if isinstance(receiver, MoveItConfig):
+            return receiver.attributes.get(name) or Method(receiver, name)
         if isinstance(receiver, Context) and name == "launch_configurations":
             return Context(True)
         if isinstance(receiver, TextValue) and name == "parent":
@@ -454,11 +522,17 @@ class Walker:
         return Unknown(get_source(node))
 
     def evaluate_BoolOp(self, node: ast.BoolOp) -> Any:
-        """`and` and `or`: known where what comes first decides, else a value that tells at launch."""
+        """`and` and `or`: known where what comes first decides, else a value that tells at launch whether they hold.
+        What they are worth is not known where that may be a text: `url or "http://localhost"`."""
+        found = self._join_conditions(node)
+        values = [self.evaluate(part) for part in node.values]
+        return found if found in values or all(map(_is_flag, values)) else Unknown(get_source(node))
+
+    def _join_conditions(self, node: ast.BoolOp) -> Any:
         is_or = isinstance(node.op, ast.Or)
         open_: list[Value] = []
         for place, part in enumerate(node.values):
-            value = self.evaluate(part)
+            value = self._join_conditions(part) if isinstance(part, ast.BoolOp) else self.evaluate(part)
             truth = self.find_truth(value, part)
             if isinstance(truth, bool):
                 if truth == is_or or (place == len(node.values) - 1 and not open_):
@@ -518,7 +592,7 @@ class Walker:
             unknown = turns is None
             if turns is None:
                 over = f"for {get_source(generator.target)} in {get_source(generator.iter)}"
-                self.conditions.append(ActionCondition("each", (make_other(over),), node.lineno))
+                self.conditions.append(ActionCondition("each", (make_other(over),), self.locate(node)))
                 turns = [None]
             for value, extra in map(split_conditions, turns):
                 start = len(self.conditions)
@@ -530,7 +604,7 @@ class Walker:
                 truths = [self.evaluate_test(test) for test in generator.ifs]
                 if not any(truth is False for truth in truths):
                     self.conditions += [
-                        ActionCondition("if", t, node.lineno) for t in truths if not isinstance(t, bool)
+                        ActionCondition("if", t, self.locate(node)) for t in truths if not isinstance(t, bool)
                     ]
                     walk(place + 1)
                 del self.conditions[start:]
@@ -567,6 +641,7 @@ class Walker:
         given = self.evaluate_Dict(make_mapping(node)).items
         named = [(find_literal(key.value), value) for key, value in given if isinstance(key, TextValue)]
         keywords = {name: value for name, value in named if name is not None}
+        self.last_line = self.locate(node)
         if isinstance(function, LaunchFunction):
             return self.call_function(function, arguments, keywords)
         if isinstance(function, LaunchClass):
@@ -586,8 +661,10 @@ class Walker:
         if self.calls >= DEEPEST_CALL:
             return Unknown(getattr(node, "name", "lambda"))
         scope, depth = LaunchScope(function.scope), len(self.conditions)
-        outer = (self.scope, self.returns, self.base)
+        outer = (self.scope, self.returns, self.base, self.outside)
         self.scope = function.scope
+        if function.scope.find_module():
+            self.outside = self.outside or self.last_line
         positional = iter(arguments if function.self is None else [function.self, *arguments])
         rest = dict(keywords)
         for kind, parameter, default in list_parameters(node.args):
@@ -609,7 +686,7 @@ class Walker:
             return self.merge_returns()
         finally:
             self.calls -= 1
-            self.scope, self.returns, self.base = outer
+            self.scope, self.returns, self.base, self.outside = outer
 
     def merge_returns(self) -> Any:
         """What the return statements reached give together."""
@@ -625,6 +702,8 @@ class Walker:
     def call_method(self, method: Method, arguments: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
         receiver, name = method
         first = arguments[0] if arguments else None
+        if isinstance(receiver, MoveItConfig):
+            return self.make(self, node, f"{receiver.path}.{name}", [receiver, *arguments], keywords)
         if isinstance(receiver, Items):
             if name in ("append", "add_action", "add_entity") and arguments:
                 self.extend(receiver, arguments[:1])
@@ -635,6 +714,8 @@ class Walker:
                 receiver.items.insert(place, self.add_conditions(arguments[1], receiver.depth))
             elif name == "remove" and first in receiver.items:
                 receiver.items.remove(first)
+            elif name == "update" and receiver.kind == "parameters" and arguments:
+                self.extend(receiver, arguments[:1])
             elif name == "copy":
                 return Items(list(receiver.items), len(self.conditions), receiver.kind)
             else:
@@ -744,6 +825,14 @@ class Walker:
 _NO_ACTION = ("nothing()", "os.", "shutil.", "logging.", "sys.", "time.", "warnings.", "print(")
 _FINDING = frozenset(("find", "prefix"))
 _BOOLEAN_PIECES = frozenset(("equals", "not", "and", "or", "in"))
+
+
+def _is_flag(value: Any) -> bool:
+    """Whether a value is true or false, and no text that stands for either."""
+    if isinstance(value, LaunchConstant):
+        return isinstance(value.value, bool)
+    is_piece = isinstance(value, TextValue) and len(value.value) == 1
+    return is_piece and value.value[0].kind in _BOOLEAN_PIECES
 
 
 def _join_filled(pieces: Sequence[Any], node: ast.AST) -> TextValue | Unknown:

@@ -374,10 +374,22 @@ def _read_behavior_trees(data: bytes) -> ReferenceFile:
             name, offset = (attribute.value, attribute.offset) if attribute else (element.name, element.offset + 1)
             if name not in _EXPLICIT and _TREE_NODE.match(name):
                 found.add("tree node", "", name, offset, False)
+                _add_ports(found, document.text, element, name)
     return structs.replace(found.make_file(), trees=tuple(trees), modelled=tuple(modelled))
 
 
 _TREE_NODE = re.compile(r"\w[\w .-]*\Z")
+_NO_PORTS = frozenset(("name", "ID"))
+# What begins with an underscore is read by the parser itself.
+_TREE_PORT = re.compile(r"[A-Za-z][\w.-]*\Z")
+
+
+def _add_ports(found: _Found, text: str, element: Element, node: str) -> None:
+    """The ports that an element gives a value; of a subtree they are whatever that uses."""
+    for attribute in element.attributes if not node.startswith("SubTree") else ():
+        if attribute.name not in _NO_PORTS and _TREE_PORT.match(attribute.name):
+            offset = text.rfind(attribute.name, element.offset, attribute.offset)
+            found.add("tree port", "", f"{node} {attribute.name}", offset, False)
 
 
 def _read_plugin_description(data: bytes) -> ReferenceFile:
@@ -413,7 +425,8 @@ def _drop_tolerated(data: bytes, problems: tuple[Problem, ...]) -> tuple[Problem
     if "declaration" in problems[0].message:
         blanked = DECLARATION.sub(lambda m: b"\n" * m.group().count(b"\n"), blanked, count=1)
     blanked = VALUE.sub(lambda m: m.group().replace(b"<", b"&lt;"), blanked)
-    return tuple(p for p in find_xml_problems(blanked) if "junk after document element" not in p.message)
+    found = (p for p in find_xml_problems(blanked) if "junk after document element" not in p.message)
+    return tuple(Problem(p.line, p.message) for p in found)  # columns are those of what is blanked
 
 
 PLUGIN_KEY = re.compile(r"(?:plugins?|kinematics_solver|_adapters|_layer)\Z")
@@ -448,6 +461,37 @@ def _add_plugin_values(found: _Found, text: str, offset: int, conditional: bool)
             found.add("plugin", "", item["value"], offset + m.start("items") + item.start("value"), conditional)
 
 
+# Libraries of nodes of behaviour trees, which Nav2 and others load: a list in one line, or of an item each.
+LIBRARIES = re.compile(r"[ \t]*[\"']?[\w.]{0,100}plugin_lib(?:_name|rarie)?s[\"']?[ \t]*:(?P<rest>.*)")
+LIBRARY = re.compile(r"[\w.-]+")
+LIBRARY_ITEM = re.compile(r"[ \t]*-[ \t]+[\"']?(?P<name>[\w.-]+)[\"']?[ \t]*(?:#.*)?\r?\Z")
+
+
+def _add_libraries(found: _Found, text: str) -> None:
+    """The libraries that lists of them name."""
+    offset = 0
+    reading = ""
+    for line in text.split("\n"):
+        start, offset = offset, offset + len(line) + 1
+        opened = LIBRARIES.match(line)
+        if opened is not None:
+            line, start = opened["rest"].partition("#")[0], start + opened.start("rest")
+            reading = "inline" if line.strip().startswith("[") else "items" if not line.strip() else ""
+        item = LIBRARY_ITEM.match(line) if reading == "items" else None
+        if reading == "inline":
+            for name in LIBRARY.finditer(line.partition("#")[0].partition("]")[0]):
+                _add_library(found, name.group(), start + name.start())
+            reading = "" if "]" in line else reading
+        elif item is not None:
+            _add_library(found, item["name"], start + item.start("name"))
+        elif opened is None and line.strip() and not line.lstrip().startswith("#"):
+            reading = ""
+
+
+def _add_library(found: _Found, name: str, offset: int) -> None:
+    found.add("library", "", name.removeprefix("lib").removesuffix(".so"), offset, False)
+
+
 def _read_params(data: bytes) -> ReferenceFile:
     if data[:4096].lstrip().startswith(b"launch:"):
         return _read_launch(data, "launch_yaml")
@@ -462,6 +506,8 @@ def _read_yaml(data: bytes) -> ReferenceFile:
     text = decode(data)
     found = _Found(Document(text).locate)
     _add_plugin_values(found, text, 0, False)
+    if "plugin_lib" in text:
+        _add_libraries(found, text)
     for m in re.finditer(r"^.*(?:\$\(|://).*$", text, re.MULTILINE):
         line = m.group()
         comment = re.search(r"(?:^|\s)#", line)

@@ -14,7 +14,7 @@ from ....edges.memory import cache_in_derived
 from ...facts.extract import ExtractedFacts, extract_all
 from ...facts.field_uses import FieldFile
 from ...facts.store import Store, recall
-from ..flow.code import Fn, Variable
+from ..flow.code import Fn, Variable, get_tail
 from ..flow.definitions import describe_interfaces
 from ..flow.endpoints import Site, Statement
 from ..flow.graph import Endpoint, Graph, Publish
@@ -28,6 +28,8 @@ from .shapes import Path, Shapes, show
 from .writing import Writing, find_writes
 
 _KINDS = {"cpp": "fields_cpp", "python": "fields_python"}
+# Functions of roscpp, rospy and rclcpp that subscribe for a moment.
+_WAITS = frozenset(("waitForMessage", "wait_for_message"))
 _UNSURE = frozenset(("unresolved", "partly"))
 
 
@@ -154,11 +156,27 @@ class TopicReader:
                 yield f"{one.path}:{one.line} subscribes to any type"
             elif one.how in _UNSURE and one.topic != topic and _may_be(one.topic, topic):
                 yield f"the name that {one.path}:{one.line} subscribes to is not certain"
+        for place, named in self._waits:
+            if not named or get_tail(type_.replace("/", ".")) in named:
+                yield f"{place} waits for a message, which is not followed"
         for lost in self.graph.coverage.unresolved:
             if lost.what in ("subscriber name", "subscriber topic", "subscriber type"):
                 yield f"the name or type that {lost.path}:{lost.line} subscribes to is not known"
             elif lost.what == "started node":
                 yield f"{lost.path}:{lost.line} starts `{lost.written or 'a node'}`, whose code is not here"
+
+    @cached_property
+    def _waits(self) -> list[tuple[str, frozenset[str]]]:
+        """Where the code waits for a single message, with the last names of types that the call names; none where it
+        names none."""
+        found: list[tuple[str, frozenset[str]]] = []
+        for fn, call in self.join.code.list_calls_named(_WAITS):
+            given = [one for one in call.arguments if one.kind == "name"]
+            words = {get_tail(one.text) for one in given}
+            words |= {get_tail(self.join.code.resolve_type(one, fn).name) for one in given}
+            words |= {get_tail(part) for part in re.findall(r"[\w:]+", call.types)}
+            found.append((f"{fn.source.path}:{call.line}", frozenset(word for word in words if word[:1].isupper())))
+        return found
 
     @cached_property
     def sites(self) -> dict[tuple[str, int], list[Site]]:

@@ -98,6 +98,11 @@ class CommandLine:
         wanted = self._find_flags(fn, guard)
         return wanted is not None and wanted.isdisjoint(arguments)
 
+    def decide_number(self, guard: Guard, arguments: Sequence[str]) -> bool | None:
+        """Whether a guard that asks how many arguments there are holds; None for those that ask something else."""
+        holds = _holds(guard.text, len(arguments) + 1) if guard.kind in ("if", "unless") else None
+        return not holds if guard.kind == "unless" and holds is not None else holds
+
     def is_option_given(self, fn: Fn, guard: int, arguments: Sequence[str]) -> bool:
         """Whether a guard holds because an option is among the arguments: `if argv[i] == "-x"`."""
         wanted = self._find_flags(fn, guard)

@@ -73,7 +73,7 @@ class Calls:
             name = row.parts[0] if row.kind == "list" and row.parts else row
             if name.kind != "text":
                 continue
-            one = structs.replace(call, arguments=(FlowExpr("text", head + name.text), *row.parts[1:2]))
+            one = structs.replace(call, arguments=(FlowExpr("text", head + name.text), *row.parts[1:3]))
             known = self.table.calls.get("declare_parameter", ())
             described = [each for each in known if each.language in ("", fn.source.facts.language)]
             yield from (FrameworkCall(fn, each, one) for each in described[:1])

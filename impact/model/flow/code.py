@@ -6,7 +6,7 @@ import posixpath
 from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
-from operator import itemgetter
+from operator import attrgetter, itemgetter
 from typing import Generic, NamedTuple, TypeVar
 
 from ....edges.groups import group_pairs
@@ -136,6 +136,18 @@ class _About(Generic[_Row]):
 def _split_path(path: str) -> tuple[str, ...]:
     """The parts of a path, elements left out."""
     return tuple(part for part in path.replace("[]", "").split(".") if part)
+
+
+def _list_assignments(fn: Fn) -> Iterable[Assignment]:
+    """The assignments of a function in order, with what in C++ is added to the end of a string."""
+    if fn.source.facts.language != "cpp":
+        return fn.facts.assignments
+    added = [
+        Assignment(call.callee.rpartition(".")[0], call.arguments[0], call.line, call.guard, "", "+=")
+        for call in fn.facts.calls
+        if call.callee.endswith(".append") and len(call.arguments) == 1
+    ]
+    return sorted([*fn.facts.assignments, *added], key=attrgetter("line")) if added else fn.facts.assignments
 
 
 @lru_cache(maxsize=100_000)
@@ -566,7 +578,7 @@ class FlowCode:
 
     @cached_property
     def _writes(self) -> _About[tuple[Fn, Assignment]]:
-        return _About((e.target, (fn, e)) for fn in self.functions for e in fn.facts.assignments if e.target)
+        return _About((e.target, (fn, e)) for fn in self.functions for e in _list_assignments(fn) if e.target)
 
     @cached_property
     def _results(self) -> _About[tuple[Fn, FlowCall]]:
@@ -596,11 +608,28 @@ class FlowCode:
                         if each.type and parse_flow_type(each.type).name:
                             return each.type, one.source, one.name
         else:
-            source = self._by_path.get(variable.owner, fn.source)
-            for constant in source.facts.constants:
-                if constant.name == variable.name and constant.type:
-                    return constant.type, source, ""
+            own = self._by_path.get(variable.owner, fn.source)
+            for source in (own, *self._list_declaring_headers(variable, own)):
+                for constant in source.facts.constants:
+                    if constant.name == variable.name and constant.type:
+                        return constant.type, source, ""
         return "", fn.source, fn.scope
+
+    def _list_declaring_headers(self, variable: Variable, source: CodeFile) -> list[CodeFile]:
+        """The headers that a file in C++ sees and that declare a variable outside of functions."""
+        by_path = self._constants.get(get_tail(variable.name), {}) if source.facts.language == "cpp" else {}
+        others = [path for path in by_path if path != source.path and not path.endswith(SOURCES)]
+        seen = self._seen_files.list_seen(source.path) if others else ()
+        return [self._by_path[path] for path in others if path in seen]
+
+    @cache_method
+    def list_copies(self, variable: Variable) -> list[Variable]:
+        """What a variable that a header declares outside of functions is in the files that include the header."""
+        rows = self._constants.get(get_tail(variable.name), {}).get(variable.owner, ())
+        if variable.kind != "global" or not rows or not variable.owner.endswith(_HEADERS):
+            return []
+        including = sorted(self._seen_files.list_including(variable.owner))
+        return [Variable("global", path, variable.name) for path in including if path.endswith(SOURCES)]
 
     def list_declared_values(self, variable: Variable, fn: Fn) -> Iterator[tuple[FlowExpr, Fn]]:
         """What a member or a constant is declared with, and a function of the file in which to read it."""
@@ -895,7 +924,11 @@ class FlowCode:
     def callers(self) -> dict[Fn, list[tuple[Fn, FlowCall]]]:
         """Calls that reach a function of the code, by the function."""
         calls = self.list_calls_named(self.by_tail.keys() | self.classes.keys())
-        reached = ((target, (fn, call)) for fn, call in calls for target in self.list_targets(call.callee, fn))
+        reached = (
+            (target, (fn, call))
+            for fn, call in calls
+            for target in _select_overloads(self.list_targets(call.callee, fn), call)
+        )
         return group_pairs((target, caller) for target, caller in reached if caller[0] is not target)
 
     @cached_property
@@ -1069,3 +1102,11 @@ def _rate_nearness(cls: Cls, source: CodeFile, scope: str) -> int:
     same = cls.source.path == source.path
     near = 8 * (same or not cls.is_local) + 4 * same + 2 * (cls.source.package == source.package)
     return near + (_is_within(scope, get_outer(cls.name)) if get_outer(cls.name) else 0)
+
+
+def _select_overloads(targets: list[Fn], call: FlowCall) -> list[Fn]:
+    """Of functions of one name in C++ those that take as many arguments as a call has; all where none does."""
+    if len(targets) < 2 or targets[0].source.facts.language != "cpp":
+        return targets
+    given = len(call.arguments)
+    return [one for one in targets if len(one.facts.parameters) == given] or targets

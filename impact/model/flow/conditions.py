@@ -28,13 +28,15 @@ _AS_PYTHON = {
 }  # fmt: skip
 _BITS = frozenset("~&|^")
 _TRUTH = {"true": True, "True": True, "false": False, "False": False}
-_NOTHING = frozenset(("None", "nullptr", "NULL"))
+NOTHING = frozenset(("None", "nullptr", "NULL"))
+"""What code calls an object that is not there."""
 # Questions that strings answer, by the method's name; how long something is may be asked of a list.
 _ASKED: dict[str, Callable[..., Any]] = {
     "empty": lambda text: not text, "front": lambda text: text[:1], "back": lambda text: text[-1:],
     "startswith": str.startswith, "starts_with": str.startswith, "endswith": str.endswith, "ends_with": str.endswith,
     "lower": str.lower, "upper": str.upper, "strip": str.strip,
 }  # fmt: skip
+_LENGTHS = frozenset(("size", "length"))
 _CASTS = frozenset(("int", "float", "bool", "double", "str"))
 _Known = list[tuple[Any, frozenset[How]]]
 
@@ -90,9 +92,28 @@ class ConditionReader:
             if len(node.ops) > 1 or left is None or right is None or compare is None:
                 return DecidedCondition()
             pairs = product(left, right)
-            return _combine((_compare(one[0], other[0], compare), one[1] | other[1]) for one, other in pairs)
+            return _combine((self._compare(one[0], other[0], compare), one[1] | other[1]) for one, other in pairs)
         values = self._evaluate(node)
-        return _combine((_find_truth(value, self._is_cpp), hows) for value, hows in values or ())
+        return _combine((self.find_truth(value), hows) for value, hows in values or ())
+
+    def find_truth(self, value: Any) -> bool | None:
+        """Whether a value holds where it is a condition."""
+        return _find_truth(value, self._is_cpp)
+
+    def compare_to_nothing(self, text: str, is_equal: bool) -> bool | None:
+        """Whether a value is None or nullptr, or is not."""
+        del text, is_equal
+        return None  # what is nothing at first is made meanwhile
+
+    def measure(self, text: str) -> int | None:
+        """How long a text is."""
+        del text
+        return None  # it may be asked of a list
+
+    def _compare(self, left: Any, right: Any, compare: Callable[[Any, Any], Any]) -> bool | None:
+        if compare in _EQUALITY and isinstance(left, str) and right is None:
+            return self.compare_to_nothing(left, compare in _EQUAL)
+        return _compare(left, right, compare)
 
     def _evaluate(self, node: ast.expr) -> _Known | None:
         """What an expression may be worth, None where that is not known."""
@@ -118,9 +139,13 @@ class ConditionReader:
         given: list[ast.expr] = []
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
             ask, inner, given = _ASKED.get(node.func.attr), node.func.value, node.args
+            if node.func.attr in _LENGTHS and not node.args:
+                return self._measure(node.func.value)
         elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and len(node.args) == 1:
             ask = (lambda text: text) if node.func.id in _CASTS else None
             inner = node.args[0]
+            if node.func.id == "len":
+                return self._measure(inner)
         elif isinstance(node, ast.Subscript):
             ask, inner, given = (lambda text, place: text[place]), node.value, [node.slice]
         arguments = [self._evaluate(one) for one in given] if ask is not None else []
@@ -138,6 +163,13 @@ class ConditionReader:
         return found
 
 
+    def _measure(self, node: ast.expr) -> _Known | None:
+        """How long a text is."""
+        values = self._evaluate(node) or []
+        found = [(self.measure(value) if isinstance(value, str) else None, hows) for value, hows in values]
+        return None if not found or any(length is None for length, _ in found) else found
+
+
 def _combine(every: Iterator[tuple[bool | None, frozenset[How]]]) -> DecidedCondition:
     rows = list(every)
     answers = {answer for answer, _ in rows}
@@ -149,7 +181,7 @@ def _find_truth(value: Any, is_cpp: bool) -> bool | None:
     if not isinstance(value, str):
         return bool(value)
     number = _find_number(value)
-    if value in _TRUTH or value in _NOTHING:
+    if value in _TRUTH or value in NOTHING:
         return _TRUTH.get(value)
     return bool(number) if number is not None else None if is_cpp else bool(value)
 
@@ -181,6 +213,7 @@ def _compare(left: Any, right: Any, compare: Callable[[Any, Any], Any]) -> bool 
 
 
 _EQUALITY = (COMPARISONS[ast.Eq], COMPARISONS[ast.NotEq], COMPARISONS[ast.Is], COMPARISONS[ast.IsNot])
+_EQUAL = (COMPARISONS[ast.Eq], COMPARISONS[ast.Is])
 _ORDERED = (*_EQUALITY, *(COMPARISONS[one] for one in (ast.Lt, ast.LtE, ast.Gt, ast.GtE)))
 
 

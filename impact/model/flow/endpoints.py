@@ -26,6 +26,7 @@ from .types import find_header_interface, find_interface, parse_flow_type
 from .values import LOST, FlowValue, FlowValues, make_sibling
 
 _HANDLES = frozenset(("handle", "image_transport", "cloud_transport"))
+_NOT_YET = frozenset(("", "None", "nullptr"))
 _CONNECTS = ("connectInput", "reset")
 _PUTS = frozenset(("push_back", "emplace_back", "emplace", "insert", "append", "make_pair", "reset"))
 _ROLES: dict[str, Role] = {role: role for role in get_args(Role)}
@@ -221,8 +222,9 @@ class Sites:
         """What the name of an endpoint may be, before the node's own. prefix: of its node handle; values: what
         expressions are worth where it runs."""
         found = tuple(values.evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line))
-        # What is empty was not given yet.
-        found = tuple(one for one in found if one.text != "") or (FlowValue(None, "unresolved", "the name is empty"),)
+        # What is empty, or nothing, was not given yet.
+        empty = (FlowValue(None, "unresolved", "the name is empty"),)
+        found = tuple(one for one in found if one.text not in _NOT_YET) or empty
         if not prefix.startswith(LOST):
             return found
         lost = "the namespace of its node handle is not known"
@@ -726,6 +728,9 @@ class Sites:
                 return self._resolve_made_handle(call.arguments, caller, depth)
         for other in self._resets.get(variable, ()):
             return self.resolve_handle(other[1], other[0], depth + 1)
+        copies = [self.resolve_handle(value, setter, depth + 1) for setter in self._list_setters_of_copies(variable)]
+        if copies:
+            return self._select_agreed(copies)
         named = "priv" in value.text.lower() or get_tail(value.text).strip("_") in ("pnh", "nh_p")
         private = "~" if named else ""
         if variable.kind == "local":
@@ -736,6 +741,14 @@ class Sites:
                     given = [self.resolve_handle(handle, giver, depth + 1) for handle, giver in passed]
                     return self._select_agreed(given) if given else private or self._resolve_unless_handle(value, fn)
         return private
+
+    def _list_setters_of_copies(self, variable: Variable) -> list[Fn]:
+        """A function of each file that includes the header of a variable, and sets it."""
+        found: dict[str, Fn] = {}
+        for copy in self.code.list_copies(variable):
+            rows = (*self.code.list_writes(copy), *self.code.list_results(copy), *self._resets.get(copy, ()))
+            found.update((copy.owner, setter) for setter, _ in rows)
+        return list(found.values())
 
     @staticmethod
     def _select_agreed(found: list[str]) -> str:
@@ -765,6 +778,8 @@ class Sites:
             return self._resolve_namespace(first, fn)
         if first.kind == "name" and not self.calls.is_node(first, fn) and self.calls.is_textual(first, fn):
             return self._resolve_namespace(first, fn)
+        if first.kind == "index":
+            return LOST  # no handle: those are not kept in lists, texts are
         base = self.resolve_handle(first, fn, depth + 1)
         if len(arguments) > 1 and (self.calls.is_textual(arguments[1], fn)):
             below = self._resolve_namespace(arguments[1], fn)
@@ -841,10 +856,18 @@ class Sites:
         kind = self.code.resolve_name_type(receiver, use.fn)
         if not use.sure and kind.name:
             return None  # of a class that is not a framework's
-        if not use.sure and len(use.call.arguments) > 2:
+        if not use.sure and (len(use.call.arguments) > 2 or self._is_like_own_method(use)):
             return None
         known = self._resolve_interface(kind.arguments[0], use.fn) if kind.arguments else ""
         return Statement(use, (), known, expression, f"which publisher `{receiver}` is cannot be known")
+
+    def _is_like_own_method(self, use: FrameworkCall) -> bool:
+        """Whether a method of the code's own is called as this is, and takes as many arguments, none or several."""
+        given = len(use.call.arguments)
+        return given != 1 and any(
+            target.facts.owner and len(target.facts.parameters) == given
+            for target in self.code.by_tail.get(get_tail(use.call.callee), ())
+        )
 
     def list_publishers(self, receiver: str, fn: Fn, depth: int = 0) -> Iterator[Site]:
         """The publishers that an expression may stand for: kept there, passed in, or copied from elsewhere."""

@@ -161,7 +161,7 @@ class Timer(msgspec.Struct, frozen=True):
 
 
 class ParameterUse(msgspec.Struct, frozen=True):
-    """A parameter that is declared or read. name: full name in ROS 1, the name within the node in ROS 2; default: as
+    """A parameter that is declared or read. name: as the code gives it, in ROS 1 to the node handle; default: as
     written, empty for none."""
 
     node: str

@@ -26,6 +26,11 @@ class SeenFiles:
         compiled = walk([path], lambda one: self._includers.get(one, ()))
         return frozenset(walk(compiled, lambda one: self._included.get(one, ())))
 
+    @cache_method
+    def list_including(self, path: str) -> frozenset[str]:
+        """The files that include one, also by way of others; without itself."""
+        return frozenset(walk(self._includers.get(path, ()), lambda one: self._includers.get(one, ())))
+
     @cached_property
     def _by_last(self) -> dict[str, list[CodeFile]]:
         return group_pairs((posixpath.basename(path), source) for path, source in self._sources.items())

@@ -13,8 +13,9 @@ from msgspec import structs
 from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ....edges.reach import walk
-from ...facts.flow import FlowFile, Guard
+from ...facts.flow import FlowExpr, FlowFile, Guard
 from ..launch.result import EMPTY, Launched, ShareLine, Started
+from ..launch.text import LaunchText
 from . import nodes as programs_of
 from .calls import FOREIGN, Calls, FrameworkCall
 from .code import CodeFile, FlowCode, Fn, get_tail, list_made
@@ -39,7 +40,7 @@ from .graph import (
     Way,
 )
 from .loads import Loaded, list_loaded
-from .names import NameRefused, is_open, normalise, resolve_ros1_name, resolve_ros2_name
+from .names import NameRefused, is_open, make_open_part, normalise, resolve_ros1_name, resolve_ros2_name
 from .nodes import BuiltPackage, CodeReach, StartableProgram
 from .objects import NodeObjects, make_key
 from .qos import apply_overrides, find_qos, list_overridable
@@ -50,6 +51,8 @@ from .values import ASKING, FlowValue, FlowValues, spell_condition
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _OVERRIDES = re.compile(r"qos_overrides\.").match
+# The condition of a name that code gives which a node does not run.
+_PASSED = "something that runs passes the name"
 _MOST_WAYS = 16
 _DEEPEST = 10
 _TRIGGERS = {
@@ -58,11 +61,19 @@ _TRIGGERS = {
 }  # fmt: skip
 
 
+class CallWay(Way, frozen=True):
+    """A way to a function. functions: those that it runs through before it, outermost first; of several ways with the
+    same guards, those of one."""
+
+    functions: tuple[str, ...] = ()
+
+
 class Running(NamedTuple):
     """A program with the node it is, and what of the code it reaches. instance: how a launch starts it; values: what
     expressions are worth there; classes: by key. loaded: how the node loads this program, which is a nodelet then.
     objects: of a program that is several nodes the keys of those that this is, as NodeObject has them, None where it is
-    one; others: those of its other nodes alone, where this is the first of them, which has all that no key is about."""
+    one; others: those of its other nodes alone, where this is the first of them, which has all that no key is about.
+    fixed: what a launch does not change of its name, as NodeObject has it."""
 
     program: StartableProgram
     node: Node
@@ -73,6 +84,7 @@ class Running(NamedTuple):
     loaded: Loaded | None = None
     objects: frozenset[str] | None = None
     others: frozenset[str] | None = None
+    fixed: frozenset[str] = frozenset()
 
 
 Owner = Running | Node | None
@@ -117,7 +129,7 @@ class Join:
         # With who runs it, so that nothing else comes by the same id().
         self._sites_of: dict[tuple, list[tuple[Running, dict[str, FlowValue | None], Site]]] = {}
         # Of a function it is the same in all nodes that run the same of what leads to it.
-        self._ways: dict[tuple[Fn, frozenset[Fn]], list[Way]] = {}
+        self._ways: dict[tuple[Fn, frozenset[Fn]], list[CallWay]] = {}
 
     def list_running(self) -> list[Running]:
         """All programs that talk, with their nodes, sorted."""
@@ -129,7 +141,7 @@ class Join:
         for program in programs_of.list_programs(self.code, self.built, self._find_kinds):
             functions, classes = self._find_reached(program)
             named = [use for use in self.calls.select_uses("node") if use.fn in functions]
-            node, use = self._make_node(program, named)
+            node, use = self._make_node(program, named, self.values.run(functions))
             one = Running(program, node, functions, classes, self.values)
             several = program.kind in ("executable", "script", "component")
             found += self._split_by_object(one, use) if several else [one]
@@ -207,9 +219,7 @@ class Join:
         """The guards, by their places, that may ask for a parameter by what stands in them, and under which nodes or
         objects of the code are made or functions called that lead to an endpoint; by the function."""
         uses = self.calls.select_uses("parameter")
-        words = {get_tail(use.call.callee) for use in uses}
-        words |= {get_tail(use.call.target) for use in uses if use.call.target}
-        words |= {variable.name for variable in self.values.filled}
+        words = self.values.parameter_words.union(get_tail(use.call.callee) for use in uses)
         making = {fn for site in self.sites.endpoints for fn in (site.use.fn, *self._find_leading(site.use.fn))}
         nodes = group_pairs((use.fn, use.call.guard) for use in self.calls.select_uses("node"))
         found: dict[Fn, list[int]] = {}
@@ -243,10 +253,11 @@ class Join:
         own = shared.union(*(one.keys for one in first))
         others = frozenset().union(*(one.keys for one in further)) - own
         values = first[0].values if len(first) == 1 else running.values
-        yield running._replace(objects=own, others=others, values=values)
+        fixed = first[0].fixed if len(first) == 1 else frozenset()
+        yield running._replace(objects=own, others=others, values=values, fixed=fixed)
         for one in further:
             node = structs.replace(running.node, id=f"{running.node.id}{one.name}", name=one.name)
-            yield running._replace(node=node, objects=one.keys - shared, values=one.values)
+            yield running._replace(node=node, objects=one.keys - shared, values=one.values, fixed=one.fixed)
 
     def runs(self, running: Running, keys: frozenset[str]) -> bool:
         """Whether a node runs a use in one of its functions. keys: of the node objects that the use is made on."""
@@ -289,7 +300,10 @@ class Join:
                 own = own or f"<{one.program.executable or get_tail(one.program.plugin)}>"
                 # What a container is told for a component is for the component's own node alone.
                 inner = start.kind == "composable" and part.objects is not None and part.others is None
-                instance = make_instance(launch, own, _strip_given(start) if inner else start, namespace)
+                given = _strip_given(start) if inner else start
+                if part.fixed:
+                    given, namespace = _keep_fixed(given, part.fixed, namespace, start.namespace)
+                instance = make_instance(launch, own, given, namespace)
                 node = structs.replace(
                     part.node, id=instance.name, name=instance.name, started=f"{at[0]}:{at[1]}",
                     uncertain=instance.uncertain,
@@ -360,12 +374,11 @@ class Join:
         )
 
     def _make_node(
-        self, program: StartableProgram, named: list[FrameworkCall]
+        self, program: StartableProgram, named: list[FrameworkCall], running: FlowValues
     ) -> tuple[Node, FrameworkCall | None]:  # fmt: skip
-        """The node that a program is, or the first of those, and the use that names it."""
-        own = (
-            [use for use in named if get_tail(use.fn.facts.owner) == get_tail(program.plugin)] if program.plugin else []
-        )
+        """The node that a program is, or the first of those, and the use that names it. running: what expressions are
+        worth in what it runs."""
+        own = self._list_plugin_names(program.plugin, named) if program.plugin else []
         in_main = [use for use in named if use.fn in program.roots]
         # Of the classes that name nodes, those that are made first where the program begins; helpers' nodes come later.
         made = [get_tail(name.partition("<")[0]) for root in program.roots for name, _, _ in list_made(root, self.code)]
@@ -379,26 +392,41 @@ class Join:
         name, use = "", None
         for candidate in [*own, *in_main, *others]:
             written = self.calls.find_argument(candidate, candidate.row.topic)
-            values = self.values.evaluate(written, candidate.fn, candidate.call.line)
+            values = running.evaluate(written, candidate.fn, candidate.call.line)
             # `_` stands for a name that options give.
             found = next((value.text for value in values if value.text and value.text != "_"), "")
             if use is None or found:
                 name, use = found or "", candidate
             if found and "{" not in found:
                 break
-        default = program.executable or _convert_to_snake(get_tail(parse_flow_type(program.plugin).name))
+        default = f"<{program.executable or _convert_to_snake(get_tail(parse_flow_type(program.plugin).name))}>"
+        if use is not None and (written := self.calls.find_argument(use, use.row.topic)) is not None:
+            default = programs_of.spell_unknown_name(written) or default
         # What loads a plugin is another program, which gives it a node, or a nodelet its name; who makes the node of a
         # program that makes none is not known either.
         unknown = program.kind in ("plugin", "nodelet") or not (named or self.ros == 2)
+        if use is not None and not name:
+            written = self.calls.find_argument(use, use.row.topic)
+            if written is not None and written.kind != "text" and not self.calls.is_node(written, use.fn):
+                default = _spell_open(written)  # what the code gives is not known
         full = "" if unknown else normalise("/" + (name or default).lstrip("/"))
         if use is not None and full:
-            full = self.objects.join_namespace(use, full.lstrip("/"), self.values)
+            full = self.objects.join_namespace(use, full.lstrip("/"), running)
         language = "python" if program.kind == "script" else "cpp"
         node = Node(
             f"{program.package}/{program.executable or program.plugin}", full, program.package, program.kind,
             program.executable, program.plugin, language, program.path, program.line,
         )  # fmt: skip
         return node, use
+
+    def _list_plugin_names(self, plugin: str, named: list[FrameworkCall]) -> list[FrameworkCall]:
+        """The uses that name the nodes of the class of a plugin, its own before those of its bases."""
+        ranks: dict[str, int] = {get_tail(plugin): 0}
+        for cls in self.code.classes.get(get_tail(plugin), ()):
+            for place, base in enumerate(self.code.list_bases(cls)):
+                ranks.setdefault(get_tail(base.name), place)
+        found = [use for use in named if get_tail(use.fn.facts.owner) in ranks]
+        return sorted(found, key=lambda use: ranks[get_tail(use.fn.facts.owner)])
 
     def list_guards(self, fn: Fn, index: int) -> tuple[GuardAt, ...]:
         """The guards at a place of a function, outermost first."""
@@ -421,7 +449,7 @@ class Join:
                 use = timer.use
                 yield fn, Trigger("timer", timer.period, use.fn.source.path, use.call.line)
 
-    def list_ways(self, fn: Fn, functions: set[Fn] | None = None) -> list[Way]:
+    def list_ways(self, fn: Fn, functions: set[Fn] | None = None) -> list[CallWay]:
         """The ways that lead to a function from whatever triggers it. functions: those that run, all when None."""
         leading = self._find_leading(fn)
         key = (fn, leading if functions is None else leading & functions)
@@ -441,28 +469,34 @@ class Join:
 
         return frozenset(walk(list_above(fn), list_above))
 
-    def _walk_callers(self, fn: Fn, functions: set[Fn] | None, depth: int, seen: tuple[Fn, ...]) -> list[Way]:
-        found = [Way(trigger) for trigger in self.triggers.get(fn, ())]
-        if fn in seen or depth > _DEEPEST:
+    def _walk_callers(self, fn: Fn, functions: set[Fn] | None, depth: int, seen: tuple[Fn, ...]) -> list[CallWay]:
+        found = [CallWay(trigger) for trigger in self.triggers.get(fn, ())]
+        if fn in seen:
             return found
         here = (*seen, fn)
-        for caller, call in self.code.callers.get(fn, ()):
+        goes_round = False
+        for caller, call in self.code.callers.get(fn, ()) if depth <= _DEEPEST else ():
             if functions is not None and caller not in functions:
                 continue
             own = self.list_guards(caller, call.guard)
-            for way in self._walk_callers(caller, functions, depth + 1, here):
-                found.append(Way(way.trigger, (*way.guards, *own)))
+            led = self._walk_callers(caller, functions, depth + 1, here)
+            goes_round = goes_round or not led
+            for way in led:
+                found.append(CallWay(way.trigger, (*way.guards, *own), (*way.functions, caller.name)))
                 if len(found) >= _MOST_WAYS:
                     return found
+        if not found and goes_round and seen:
+            return found  # a call that only its own callee leads to is no further way
         if not found:
             around = self.code.find_enclosing(fn)
             if around is not None:
-                return self._walk_callers(around, functions, depth + 1, here)
+                ways = self._walk_callers(around, functions, depth + 1, here)
+                return [CallWay(way.trigger, way.guards, (*way.functions, around.name)) for way in ways]
             owner = get_tail(fn.facts.owner)
             starts = fn.name in ("main", "") or (owner and get_tail(fn.name) in (owner, "__init__"))
             kind = "start" if starts else "unknown"
-            found.append(Way(Trigger(kind, get_tail(fn.name), fn.source.path, fn.facts.line)))
-        return list(dict.fromkeys(found))
+            found.append(CallWay(Trigger(kind, get_tail(fn.name), fn.source.path, fn.facts.line)))
+        return list({(way.trigger, way.guards): way for way in reversed(found)}.values())[::-1]
 
     def build(self, root: str = "", rev: str = "", unread: Iterable[str] = (), launch: Launched | None = None) -> Graph:
         """The graph of all programs, or of what a launch starts. Without one, code that no program runs belongs to
@@ -580,7 +614,7 @@ class Join:
 
     def _adapt_site(self, site: Site, owner: Owner) -> Site:
         """A site as it is for whoever runs it: with the parameters and the arguments that a launch gives."""
-        if not isinstance(owner, Running) or site.implied or (owner.values is self.values and len(site.names) < 2):
+        if not isinstance(owner, Running) or site.implied or (owner.values is self.values and self._is_written(site)):
             return site
         arguments, made = owner.values.arguments, id(owner.values.made)
         known = self._sites_of.setdefault((id(site.use), id(owner.functions), arguments, made), [])
@@ -591,11 +625,21 @@ class Join:
         # What code that the node does not run passes to its functions is none of its names.
         names = self.sites.list_names(site.use, site.prefix, owner.values.run(owner.functions))
         if all(name.text is None for name in names):
-            names = self.sites.list_names(site.use, site.prefix, owner.values)
+            # It comes from code that the node does not run, as far as is known.
+            elsewhere = self.sites.list_names(site.use, site.prefix, owner.values)
+            names = tuple(
+                name if name.text is None else name._replace(only_if=_join_conditions(name.only_if, _PASSED))
+                for name in elsewhere
+            )
         type_ = site.type or self.sites.find_type(site.use, owner.values)
         found = site._replace(names=names, type=type_)
         known.append((owner, dict(self.values.asked), found))
         return found
+
+    def _is_written(self, site: Site) -> bool:
+        """Whether a site's only name is written where it is made."""
+        named = self.calls.find_argument(site.use, site.use.row.topic)
+        return len(site.names) < 2 and (named is None or named.kind == "text")
 
     def _make_endpoint(self, site: Site, value: FlowValue, type_: str, owner: Owner) -> Endpoint:
         use = site.use
@@ -609,7 +653,7 @@ class Join:
             qos = apply_overrides(qos, topic, site.role, policies, owner.values.settings) if policies else qos
         replaced = "the name is not replaced" if value.how == "partly" else ""
         conditions = ("" if site.implied else self._describe_condition(use, owner), value.only_if, replaced)
-        only_if = " && ".join(dict.fromkeys(filter(None, conditions)))
+        only_if = _join_conditions(*conditions)
         return Endpoint(
             site.role, node.id if node else "", topic, type_, *_get_place(use), site.written, how, qos,
             _make_callback(site.callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
@@ -785,6 +829,19 @@ def _strip_given(start: Started) -> Started:
     return start._replace(name=EMPTY, namespace=EMPTY, remaps=(), settings=())
 
 
+def _keep_fixed(
+    start: Started, fixed: frozenset[str], namespace: str, around: LaunchText
+) -> tuple[Started, str]:  # fmt: skip
+    """A start without what the options of the node give it all the same, and its namespace in the code. around: the
+    namespace that the launch gives the program."""
+    if "name" in fixed:
+        start = start._replace(name=EMPTY)
+    if "namespace" in fixed:
+        start = start._replace(namespace=EMPTY)
+        namespace = "/<namespace>" if "below" in fixed and around.value not in (None, "", "/") else namespace
+    return start, namespace
+
+
 def _select_types(site: Site, owner: Owner) -> tuple[str, ...]:
     """The types that a site has for whoever runs it: several where a template is used with several. Which of several
     names has which of them is not known."""
@@ -803,6 +860,17 @@ def _make_code_name(site: Site, text: str) -> str:
         return f"~/{text[1:]}"
     private = site.prefix == "~" and text and text[0] not in "/~"
     return f"~/{text}" if private else text
+
+
+def _join_conditions(*conditions: str) -> str:
+    """Conditions that all have to hold, empty ones left out."""
+    return " && ".join(dict.fromkeys(filter(None, conditions)))
+
+
+def _spell_open(name: FlowExpr) -> str:
+    """The name that an expression gives a node, with brackets for what is not known."""
+    parts = name.parts if name.kind == "join" else (name,)
+    return "".join(part.text if part.kind == "text" else make_open_part(f"<{unparse(part)}>") for part in parts)
 
 
 def _get_node(owner: Owner) -> Node | None:

@@ -16,6 +16,7 @@ from ..launch.result import Launched, LaunchParameter, SettingFile, ShareLine, S
 from ..launch.text import wrap
 from ..package import find_folder_role
 from ..workspace import Workspace
+from .bridges import add_bridges
 from .graph import Graph
 from .join import Join, Running
 from .launches import follow_launch_files, list_launch_files
@@ -157,6 +158,7 @@ class _Side:
     def settings(self) -> dict[str, str]:
         """Contents of launch files, parameter files and robot descriptions, by path; those of tests are left out."""
         found = {path: "" for _, path, _ in list_launch_files(self.workspace)}
+        found |= {helper: "" for path in tuple(found) for helper in self.sources.list_helpers(path)}
         for package in self.workspace:
             start = len(package.path) + 1 if package.path else 0
             for path in package.linked.files:
@@ -188,7 +190,10 @@ class _Side:
     def list_files(self, launched: Launched) -> Iterator[str]:
         """All files that decide what a launch starts."""
         for place in (*launched.files, *launched.parameter_files):
-            yield self.sources.find_workspace_path(*place)
+            path = self.sources.find_workspace_path(*place)
+            yield path
+            if place in launched.files:
+                yield from self.sources.list_helpers(path)
         for started in (*launched.started, *launched.outside):
             for text in _list_texts(launched, started):
                 yield from self.list_described(text)
@@ -211,7 +216,8 @@ class _Side:
     def start(self, launched: Launched | None) -> tuple[list[StartedNode], Graph]:
         """What a launch starts, and its graph."""
         launched = launched or Launched((), {}, ())
-        return list(self._list_starts(launched)), self.find_code().build(launch=launched)
+        graph = add_bridges(self.find_code().build(launch=launched), launched, self.sources)
+        return list(self._list_starts(launched)), graph
 
     def _list_starts(self, launched: Launched) -> Iterator[StartedNode]:
         running, _ = self.find_code().find_started(launched)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import posixpath
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import islice
 from typing import Any, TypeVar
@@ -15,14 +16,20 @@ from ...facts.kinds import find_kind
 from ...facts.store import recall
 from ..launch.fill import ChangedFiles
 from ..launch.follow import MOST_ACTIONS, follow
-from ..launch.result import Launched, SettingFile, Started, select_file_values
+from ..launch.result import Launched, LaunchParameter, SettingFile, Started, select_file_values
+from ..launch.text import parse_ros1_value, parse_yaml_value
 from ..package import find_folder_role
+from ..parameter_library import find_terms, list_libraries
+from ..parameter_values import GivenValue, ParameterTerms, find_broken_limit, fits_type, make_given_value
 from ..workspace import Workspace
+from .bridges import add_bridges
+from .endpoints import LOST
 from .escape_analysis import EscapeAnalysis, UnknownReasons
 from .file_selection import compute_stamp
 from .graph import Graph
 from .join import Join, Running
 from .names import NameRefused, normalise, parse_ros2_rule, resolve_ros1_name, resolve_ros2_name
+from .parameter_terms import list_reconfigurable, list_terms
 from .started import Instance, InWorkspace, classify_launch_file
 
 _Row = TypeVar("_Row")
@@ -52,10 +59,37 @@ class GivenParameter(msgspec.Struct, frozen=True):
     line: int
 
 
+class RefusedValue(msgspec.Struct, frozen=True):
+    """A value that a node is given, and that its parameter does not take. broken: the limit that it breaks, empty where
+    its type is wrong. clamped: the server of dynamic_reconfigure changes it and goes on."""
+
+    given: GivenValue
+    terms: ParameterTerms
+    broken: str = ""
+    clamped: bool = False
+
+    @property
+    def is_type(self) -> bool:
+        """Whether the type is wrong."""
+        return not self.broken
+
+    @property
+    def path(self) -> str:
+        """The file that sets it."""
+        return self.given.path
+
+    @property
+    def line(self) -> int:
+        """The line that sets it."""
+        return self.given.line
+
+
 class LaunchedNode(msgspec.Struct, frozen=True):
     """A node as a launch file starts it. node: its id in the graph of that launch. names: the full names that its code
-    uses, before remapping; parameters: those it declares or reads. hidden, hidden_parameters: why these are not all
-    known, and so left empty. uncertain: why it may have another name, or may not be started at all.
+    uses, before remapping; parameters: those it declares or reads, in ROS 1 by their full names, or as `*/name` where
+    the code does not tell the namespace. hidden, hidden_parameters: why these are not all known, and so left empty.
+    uncertain: why it may have another name, or may not be started at all. refused: values that it is given and that its
+    parameters do not take.
     """
 
     node: str
@@ -68,18 +102,22 @@ class LaunchedNode(msgspec.Struct, frozen=True):
     hidden: str
     hidden_parameters: str
     uncertain: tuple[str, ...]
+    refused: tuple[RefusedValue, ...] = ()
 
 
 class Launch(msgspec.Struct, frozen=True):
     """What a launch file starts. path: in the workspace. graph: of all that it starts. missing: it starts programs too
     whose code is not in the workspace, or that are not known, or it includes what is not followed; elsewhere: the
-    lines, as `path:line`, of the remappings and parameters that those programs are given."""
+    lines, as `path:line`, of the remappings and parameters that those programs are given. possible: the graph of what
+    it starts only if conditions hold that do not with the defaults of its arguments, of programs that no launch file
+    starts with these; None for nothing."""
 
     path: str
     graph: Graph
     starts: tuple[LaunchedNode, ...]
     missing: bool
     elsewhere: tuple[str, ...] = ()
+    possible: Graph | None = None
 
 
 _Followed = tuple[str, Launched]
@@ -129,7 +167,7 @@ def _find_launches(workspace: Workspace, code: Callable[[], Join], jobs: int) ->
 
 
 def _select_working(followed: Iterable[_Followed]) -> list[_Followed]:
-    return [row for row in followed if row[1].started or row[1].outside]
+    return [row for row in followed if row[1].started or row[1].outside or row[1].possible]
 
 
 def _run_within_limits(task: Callable[..., Iterable[_Row]], *given: Any) -> list[_Row]:
@@ -144,7 +182,7 @@ def _start(workspace: Workspace, join: Join, followed: Sequence[_Followed]) -> I
     unknown: dict[str, UnknownReasons] = {}
     for path, launch in followed:
         running, missing = join.find_started(launch)
-        graph = join.build(launch=launch)
+        graph = add_bridges(join.build(launch=launch), launch, sources)
         starts = []
         for one in running:
             program = f"{one.program.package}/{one.program.executable or one.program.plugin}"
@@ -158,11 +196,13 @@ def _start(workspace: Workspace, join: Join, followed: Sequence[_Followed]) -> I
             for started in others
             for given in (*started.remaps, *started.settings)
         }
-        yield Launch(path, graph, tuple(starts), bool(others or missing), tuple(sorted(elsewhere)))
+        possible = launch.possible and add_bridges(join.build(launch=launch.possible), launch.possible, sources)
+        yield Launch(path, graph, tuple(starts), bool(others or missing), tuple(sorted(elsewhere)), possible)
 
 
 def _follow(workspace: Workspace, files: Sequence[tuple[str, str, str]]) -> list[_Followed]:
-    """Each launch file that no other includes, followed. files: as list_launch_files() gives them."""
+    """Each launch file that no other includes, followed, with what it may start of programs that none of them does.
+    files: as list_launch_files() gives them."""
     sources, changed = InWorkspace(workspace), ChangedFiles()
     found: list[_Followed] = []
     included: set[str] = set()
@@ -174,7 +214,32 @@ def _follow(workspace: Workspace, files: Sequence[tuple[str, str, str]]) -> list
         found.append((path, launch))
         own, *others = launch.files or (("", ""),)
         included.update(sources.find_workspace_path(*other) for other in others if other != own)
-    return [row for row in found if row[0] not in included]
+    rows = [row for row in found if row[0] not in included]
+    started = {_identify(one) for _, launch in rows for one in launch.started}
+    given: set[tuple[str | None, str, str, str]] = set()
+    for at, (path, launch) in enumerate(rows):
+        if launch.left_out and left > 1:
+            (package, inner), most = launch.files[0], min(MOST_ACTIONS, left)
+            every = follow(
+                package, inner, sources, {}, generation=workspace.ros, most=most, changed=changed, undecided=True
+            )
+            left = max(1, left - every.actions)
+            # Of a program that several files may start under one name, the first start.
+            fresh = {
+                (*_identify(one), one.name.shown, one.namespace.shown): one
+                for one in reversed(every.started)
+                if _identify(one) not in started
+            }
+            rest = tuple(one for key, one in reversed(fresh.items()) if key not in given)
+            given.update(fresh)
+            if rest:
+                rows[at] = path, launch._replace(possible=every._replace(started=rest, outside=()))
+    return rows
+
+
+def _identify(started: Started) -> tuple[str | None, str]:
+    """The program that is started, as the launch file names it."""
+    return started.package.value, (started.plugin.shown or started.executable.shown).removesuffix(".py")
 
 
 def list_launch_files(workspace: Workspace) -> Iterator[tuple[str, str, str]]:
@@ -210,11 +275,110 @@ def _start_node(
     renamed = tuple(_list_given_remappings(sources, instance, join.ros))
     given = tuple(_list_given(sources, launch, instance.started, instance))
     names = {name for name in _list_names(join, one, instance) if name} if renamed and not reasons.names else ()
-    asked = _collect_parameters(join, one) if (given or renamed) and not reasons.parameters else ()
+    asked = _collect_parameters(join, one, instance) if (given or renamed) and not reasons.parameters else ()
     return LaunchedNode(
         one.node.id, program, one.program.package, tuple(sorted(names)), tuple(sorted(asked)), renamed, given,
         reasons.names, reasons.parameters, instance.uncertain,
+        tuple(_list_refused(join, launch, sources, one, instance)),
     )  # fmt: skip
+
+
+def _list_refused(
+    join: Join, launch: Launched, sources: InWorkspace, one: Running, instance: Instance
+) -> Iterator[RefusedValue]:
+    """The values that a node is given and does not take."""
+    if instance.started.generation == 1:
+        yield from _list_clamped(join, launch, sources, one, instance)
+        return
+    if not instance.started.settings:
+        return
+    terms = list_terms(join, one, list_libraries(sources.workspace))
+    for given in _collect_values(sources, instance.started, instance.name).values() if terms else ():
+        declared = find_terms(terms, given.name)
+        if declared is not None:
+            yield from find_refused(given, declared)
+
+
+def _list_clamped(
+    join: Join, launch: Launched, sources: InWorkspace, one: Running, instance: Instance
+) -> Iterator[RefusedValue]:
+    """The values of ROS 1 that a server of dynamic_reconfigure changes, or leaves for its default."""
+    given = launch.collect_parameters(instance.started, instance.name)
+    terms = list_reconfigurable(join, one, sources.workspace) if given else {}
+    for name, setting in given.items():
+        declared = terms.get(name)
+        at = setting.source or setting.at
+        path = sources.find_workspace_path(at.package, at.path)
+        if declared is None or not path or setting.conditions or setting.text.value is None:
+            continue
+        text = setting.text.value
+        value = text if setting.type in ("str", "string") else parse_ros1_value(text)
+        if not isinstance(value, str) or setting.type in ("", "str", "string"):
+            refused = next(find_refused(make_given_value(name, path, at.line, value), declared), None)
+            if refused is not None and not (refused.is_type and _is_converted(refused)):
+                yield msgspec.structs.replace(refused, clamped=True)
+
+
+def _is_converted(refused: RefusedValue) -> bool:
+    """Whether ROS 1 makes a number of one type into the other, or the value is no plain one."""
+    given, declared = refused.given.type, refused.terms.type
+    return {given, declared} <= {"integer", "double"} or refused.given.text[:1] in ("[", "{", "")
+
+
+def find_refused(given: GivenValue, terms: ParameterTerms) -> Iterator[RefusedValue]:
+    """Why a parameter does not take a value, if it does not."""
+    if not fits_type(given, terms):
+        yield RefusedValue(given, terms)
+    elif broken := find_broken_limit(given, terms):
+        yield RefusedValue(given, terms, broken)
+
+
+def _collect_values(sources: InWorkspace, start: Started, full: str) -> dict[str, GivenValue]:
+    """The values that hold for a node, by the names of the parameters: the last that it is given for each."""
+    found: dict[str, GivenValue] = {}
+    for setting in start.settings:
+        if isinstance(setting, SettingFile):
+            place = sources.find_workspace_path(*setting.source) if setting.source is not None else ""
+            own = (setting.file.value or "").startswith("$(find ")  # one that is changed first is not what it says
+            for name, entry in select_file_values(setting, full).items():
+                value = make_given_value(normalise(name), place, entry.line, entry.value)
+                found[normalise(name)] = value if place and own and not setting.conditions else _make_unknown(value)
+            continue
+        place = sources.find_workspace_path(setting.at.package, setting.at.path)
+        value = _read_value(setting, place)
+        found[setting.name] = value if place and not setting.conditions else _make_unknown(value)
+    return found
+
+
+def _make_unknown(value: GivenValue) -> GivenValue:
+    return GivenValue(value.name, value.path, value.line, "", "")
+
+
+# Types of launch files as ROS names them.
+_GIVEN_TYPES = {
+    "str": "string", "string": "string", "bool": "bool", "boolean": "bool", "int": "integer", "double": "double",
+    "float": "double",
+}  # fmt: skip
+# What PyYAML, which launch reads values with, takes for a text.
+_NO_NUMBER = re.compile(r"[-+]?[0-9]+[eE]")
+
+
+def _read_value(setting: LaunchParameter, path: str) -> GivenValue:
+    """The value of a parameter that a launch file of ROS 2 gives."""
+    text = setting.text.value
+    value = parse_yaml_value(text) if text is not None else None
+    type_ = _GIVEN_TYPES.get(setting.type, "")
+    is_text = type_ == "string" and not isinstance(value, str)  # launch may read a text as YAML once more
+    lost = text is None or is_text or _NO_NUMBER.match(text) or (setting.type and not type_ and setting.type != "list")
+    if lost or not _fits(value, type_):
+        return GivenValue(setting.name, path, setting.at.line, "", "")
+    return make_given_value(setting.name, path, setting.at.line, value, type_)
+
+
+def _fits(value: object, type_: str) -> bool:
+    """Whether a text can be made into a type."""
+    numeric = type_ in ("integer", "double")
+    return not numeric or (isinstance(value, (int, float)) and not isinstance(value, bool))
 
 
 def _list_names(join: Join, one: Running, instance: Instance) -> Iterator[str]:
@@ -229,12 +393,33 @@ def _list_names(join: Join, one: Running, instance: Instance) -> Iterator[str]:
                 yield join.resolve_name(site, value, bare)[0]
 
 
-def _collect_parameters(join: Join, one: Running) -> set[str]:
+def _collect_parameters(join: Join, one: Running, instance: Instance) -> set[str]:
+    """The parameters that a program asks for; of ROS 1 by their full names, or `*/name` where the node handle does not
+    tell its namespace."""
     found: set[str] = set()
     for use in join.calls.select_uses("parameter"):
         if use.fn in one.functions and join.runs(one, join.objects.find_keys(use)):
-            found.update(value.text for value in join.list_parameter_names(use) if value.text)
+            names = {value.text for value in join.list_parameter_names(use) if value.text}
+            if instance.started.generation != 1:
+                found |= names
+                continue
+            prefix = LOST if one.loaded is not None else join.sites.find_prefix(use)
+            found.update(_resolve_parameter(name, prefix, instance) for name in names)
     return found
+
+
+def _resolve_parameter(name: str, prefix: str, instance: Instance) -> str:
+    """The full name of a parameter of ROS 1. prefix: the namespace of the node handle."""
+    namespace = instance.name.rpartition("/")[0] or "/"
+    text = name.replace("{node}", instance.name).replace("{ns}", namespace)
+    if text[0] not in "/~":
+        if prefix.startswith(LOST):
+            return f"*/{text}"
+        text = f"{prefix}/{text}".replace("~/", "~") if prefix else text
+    try:
+        return instance.remap_name(text, 1)
+    except NameRefused:
+        return f"*/{text}"
 
 
 def _list_given_remappings(sources: InWorkspace, instance: Instance, ros: int) -> Iterator[GivenRemapping]:
@@ -263,9 +448,11 @@ def _list_given(sources: InWorkspace, launch: Launched, start: Started, instance
     if start.generation == 1:
         below = f"{instance.name}/"
         for name, setting in launch.server.items():
-            place = sources.find_workspace_path(setting.at.package, setting.at.path)
+            # By the line of a parameter file, which several programs may load for themselves.
+            at = setting.source or setting.at
+            place = sources.find_workspace_path(at.package, at.path)
             if name.startswith(below) and place and not setting.conditions:
-                yield GivenParameter(name[len(below) :], place, setting.at.line)
+                yield GivenParameter(name[len(below) :], place, at.line)
         return
     for setting in start.settings:
         if setting.conditions:

@@ -10,8 +10,9 @@ from ....edges.memory import cache_method
 from ....edges.reach import walk
 from ...facts.flow import FlowExpr, FlowFile
 from .code import SOURCES, FlowCode, Fn, get_tail, list_made
-from .endpoints import Sites
+from .endpoints import Sites, unparse
 from .modules import CodeFile
+from .names import is_open, make_open_part
 from .types import Cls, parse_flow_type
 
 _Thing = TypeVar("_Thing")
@@ -147,6 +148,16 @@ class CodeReach:
         if value.kind in ("function", "name") and "." not in value.text and get_tail(value.text) in self.code.by_tail:
             return [one for one in self.code.list_targets(value.text, fn) if not one.facts.owner]
         return []
+
+
+def spell_unknown_name(written: FlowExpr) -> str:
+    """A node's name as far as its expression tells it, the rest in brackets: `robot_<id>`; empty for a literal that
+    leaves it to others."""
+    if written.kind == "text":
+        return ""
+    parts = written.parts if written.kind == "join" and written.text in ("", "+") else (written,)
+    known = "".join(part.text if part.kind == "text" else make_open_part(f"<{unparse(part)[:60]}>") for part in parts)
+    return known if is_open(known) else ""
 
 
 def _keep_last_of_each(found: Iterable[_Thing]) -> tuple[_Thing, ...]:

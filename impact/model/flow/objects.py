@@ -11,25 +11,32 @@ from ...facts.flow import FlowExpr
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_parameter, get_tail
 from .graph import Role
-from .names import join_name
+from .names import join_name, normalise
 from .types import Cls, FlowType
-from .values import FlowValues
+from .values import NAMESPACE, FlowValues
 
 _DEEPEST = 6
+_OPEN = "/<namespace>"
 _ROLES = frozenset(Role.__args__)
 # What is the node itself in its methods.
 _ITSELF = frozenset(("this", "self", "*this", "shared_from_this", "this.shared_from_this"))
+_STRINGS = frozenset(("std::string", "string"))
+# What gives what a pointer points to.
+_HANDED = frozenset(("lock", "get"))
 
 
 class NodeObject(NamedTuple):
     """An object that is a node, or some that nothing tells apart. keys: what tells that a call is made on it: the
     classes that it is of, or the place where it is made; and `any CLASS`, for any object of a class. name: full, with
-    brackets for what is not known of it. values: what expressions are worth in its code. uses: those that name it."""
+    brackets for what is not known of it. values: what expressions are worth in its code. uses: those that name it.
+    fixed: `name` and `namespace` where its options give it these, whatever a launch says; `below` where that namespace
+    is below the one of another node."""
 
     keys: frozenset[str]
     name: str
     values: FlowValues
     uses: tuple[FrameworkCall, ...]
+    fixed: frozenset[str] = frozenset()
 
 
 class NodeObjects:
@@ -52,7 +59,8 @@ class NodeObjects:
             if self._find_named_class(use) is None:
                 own = self._evaluate_name(use, self.values) or f"<{get_tail(use.call.target) or 'node'}>"
                 keys = frozenset((make_key(use.fn, use.call.line),))
-                found.append(NodeObject(keys, self.join_namespace(use, own, self.values), self.values, (use,)))
+                full, fixed = self.join_namespace(use, own, self.values), self.find_fixed(use, self.values)
+                found.append(NodeObject(keys, full, self.values, (use,), fixed))
         return found
 
     @cached_property
@@ -123,15 +131,19 @@ class NodeObjects:
         # That of the framework's own class is the name; what derived classes give may be anything.
         uses = [use for one in reversed(chain) for use in by_class.get(one.key, ())]
         rows = [row for row in self.code.constructions.get(cls.key, ()) if row[0] in functions]
-        by_name: dict[str, list[Made]] = {}
+        by_name: dict[tuple[str, frozenset[str]], list[Made]] = {}
         for row in rows or [None]:
             values = self._limit(chain, [row] if row is not None else None)
             known = ((use, self._evaluate_name(use, values)) for use in uses)
             own = next(((use, name) for use, name in known if name), None)
-            full = self.join_namespace(*own, values) if own is not None else f"/<{get_tail(cls.name)}>"
-            by_name.setdefault(full, []).extend([row] if row is not None else [])
-        for name, made in by_name.items():
-            yield NodeObject(keys, name, self._limit(chain, made or None), tuple(uses))
+            full, fixed = f"/<{get_tail(cls.name)}>", frozenset[str]()
+            if own is not None:
+                # A derived class may hand the options to the one that names it.
+                telling = next((use for use in uses if _find_remapped(use, "__ns:=") is not None), own[0])
+                full, fixed = self.join_namespace(telling, own[1], values), self.find_fixed(telling, values)
+            by_name.setdefault((full, fixed), []).extend([row] if row is not None else [])
+        for (name, fixed), made in by_name.items():
+            yield NodeObject(keys, name, self._limit(chain, made or None), tuple(uses), fixed)
 
     def _limit(self, chain: list[Cls], rows: list[Made] | None) -> FlowValues:
         """What expressions are worth in objects of a class. chain: with its bases; rows: where those are made, None for
@@ -145,9 +157,20 @@ class NodeObjects:
                 callers = ((caller, call.arguments, call.line) for caller, call in self.code.callers.get(fn, ()))
                 every = [*callers, *self.code.list_constructed(fn)]
                 inside = [row for row in every if (owner := self.code.find_owner(row[0])) and owner.key in keys]
+                if rows is not None:
+                    inside = [row for row in inside if self._may_begin(row[0], chain[0], rows)]
                 own = self.code.list_constructed(fn) if rows is None else rows
                 made[fn] = [*inside, *(row for row in own if row in every and row not in inside)]
         return self.values.limit_to_objects(made)
+
+    def _may_begin(self, fn: Fn, cls: Cls, rows: list[Made]) -> bool:
+        """Whether a function of a class or its bases may be what makes objects at some places: of the constructors of
+        the class itself, those that are called there, or by others."""
+        owner = self.code.find_owner(fn)
+        if owner is None or owner.key != cls.key or not self.code.is_constructor(fn):
+            return True
+        made = self.code.list_constructed(fn)
+        return not made or any(row in rows for row in made) or bool(self.code.callers.get(fn))
 
     def _evaluate_name(self, use: FrameworkCall, values: FlowValues) -> str:
         """The name that a use gives, without a namespace; empty where it is not known."""
@@ -158,12 +181,29 @@ class NodeObjects:
 
     def join_namespace(self, use: FrameworkCall, own: str, values: FlowValues) -> str:
         """The full name of a node by its own name and the namespace that its code gives, if any."""
+        remapped = _find_remapped(use, "__ns:=")
+        if remapped is not None:
+            texts = self._list_texts(remapped, use, values)
+            spaces = {normalise("/" + (text or _OPEN).replace(NAMESPACE, "/")) for text in texts}
+            return join_name(spaces.pop() if len(spaces) == 1 else _OPEN, own)
         written = self.calls.find_argument(use, use.row.namespace) if use.row.namespace else None
         if written is None:
             return join_name("/", own)
-        texts = {one.text for one in values.evaluate(written, use.fn, use.call.line)}
+        texts = self._list_texts(written, use, values)
         space = texts.pop() if len(texts) == 1 else None
-        return join_name("/" + ("<namespace>" if space is None else space.lstrip("/")), own)
+        return join_name(_OPEN if space is None else "/" + space.lstrip("/"), own)
+
+    def find_fixed(self, use: FrameworkCall, values: FlowValues) -> frozenset[str]:
+        """What the options of a node say of it, whatever a launch says, as NodeObject.fixed has it."""
+        remapped = _find_remapped(use, "__ns:=")
+        found = {"name"} if _find_remapped(use, "__node:=") is not None else set()
+        if remapped is not None:
+            below = any(NAMESPACE in (one or "") for one in self._list_texts(remapped, use, values))
+            found |= {"namespace", "below"} if below else {"namespace"}
+        return frozenset(found)
+
+    def _list_texts(self, value: FlowExpr, use: FrameworkCall, values: FlowValues) -> set[str | None]:
+        return {one.text for one in values.evaluate(value, use.fn, use.call.line)}
 
     def find_keys(self, use: FrameworkCall) -> frozenset[str]:
         """What tells on which node objects a use is made, as NodeObject.keys has it; empty where nothing does."""
@@ -190,6 +230,8 @@ class NodeObjects:
 
     def _find_traced(self, value: FlowExpr, fn: Fn, seen: frozenset[Variable]) -> set[str]:
         """The keys of what an expression is, where it is a node object."""
+        if value.kind == "call" and not value.parts and get_tail(value.text) in _HANDED and "." in value.text:
+            value = FlowExpr("name", value.text.rpartition(".")[0])
         text = value.text.removesuffix("()")
         if text in _ITSELF or (value.kind == "other" and "this" in text):
             return self._find_own_key(fn)
@@ -230,3 +272,20 @@ class NodeObjects:
 def make_key(fn: Fn, line: int) -> str:
     """The key of what is made on a line of a function."""
     return f"{fn.source.path}:{line}"
+
+
+def _find_remapped(use: FrameworkCall, rule: str) -> FlowExpr | None:
+    """What the arguments among the options of a node remap to by a rule; None where they have none such."""
+    return next(filter(None, (_find_rule(one, rule) for one in use.call.arguments)), None)
+
+
+def _find_rule(value: FlowExpr, rule: str) -> FlowExpr | None:
+    if value.kind in ("text", "join"):
+        every = value.parts or (value,)
+        pieces = [part.parts[0] if part.text in _STRINGS and len(part.parts) == 1 else part for part in every]
+        for place, piece in enumerate(pieces):
+            if piece.kind == "text" and rule in piece.text:
+                rest = FlowExpr("text", piece.text.partition(rule)[2])
+                return FlowExpr("join", "+", (rest, *pieces[place + 1 :]))
+    inner = (*value.parts, value.receiver) if value.receiver is not None else value.parts
+    return next(filter(None, (_find_rule(one, rule) for one in inner)), None)

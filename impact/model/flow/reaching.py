@@ -66,7 +66,7 @@ class ReachingValues:
         if test is not None and len(conditional) == 1:
             self.held = [
                 one for one in self.held
-                if self._is_inside(one.guard, guard) or one.value.text is None or not test.holds(one.value.text)
+                if self._is_inside(one.guard, guard) or one.value.text is None or test.holds(one.value.text) is not True
             ]  # fmt: skip
         return test is not None
 
@@ -94,7 +94,7 @@ class ReachingValues:
 
     def find_test(self, guard: int) -> VariableTest | None:
         """What a guard asks of the variable."""
-        test = read_variable_test(self.fn.facts.guards[guard])
+        test = read_variable_test(self.fn.facts.guards[guard], self.fn.source.facts.language == "cpp")
         return test if test is not None and self._names(test.path) else None
 
     def is_sure(self, guard: int) -> bool:
@@ -151,4 +151,4 @@ def list_guards_around(fn: Fn, guard: int) -> list[int]:
 
 
 def _may_hold(test: VariableTest, value: FlowValue) -> bool:
-    return value.text is None or test.holds(value.text)
+    return value.text is None or test.holds(value.text) is not False

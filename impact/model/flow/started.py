@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
+from ....edges.memory import cache_in_derived
+from ...facts.kinds import find_size_limit
 from ...facts.launch.actions import LaunchFile
 from ...facts.launch.parameter_files import ParameterFile
+from ...facts.launch.python import extract as extract_python
 from ..launch.follow import follow
-from ..launch.result import Launched, Remap, Started
+from ..launch.result import Launched, LaunchParameter, Remap, Started
 from ..launch.text import LaunchText
 from ..workspace import Workspace
 from .names import RemappingRule, join_name, make_open_part, remap_ros1_name, remap_ros2_name
@@ -48,7 +51,16 @@ class InWorkspace:
         """The facts of a launch file; None for what is not there or is no launch file by its name."""
         place = self.find_workspace_path(package, path)
         kind = classify_launch_file(place)
-        return self._get_facts(place, f"flow_{kind}") if place and kind else None
+        found = self._get_facts(place, f"flow_{kind}") if place and kind else None
+        if found is not None and found.imports:
+            helped, _ = _read_with_helpers(self.workspace, place, found.imports)
+            return helped or found
+        return found
+
+    def list_helpers(self, path: str) -> tuple[str, ...]:
+        """The modules of the workspace that a launch file imports, themselves or by one another; all by their paths."""
+        found = self._get_facts(path, "flow_launch_python") if classify_launch_file(path) == "launch_python" else None
+        return _read_with_helpers(self.workspace, path, found.imports)[1] if found is not None else ()
 
     def find_parameter_file(self, package: str, path: str) -> ParameterFile | None:
         """The facts of a parameter file; None for what is not there."""
@@ -57,6 +69,62 @@ class InWorkspace:
 
     def _get_facts(self, place: str, kind: str) -> Any:
         return self.workspace.extraction.look((place,), kind).get(place)
+
+
+_MOST_HELPERS = 50
+
+
+@cache_in_derived
+def _read_with_helpers(
+    workspace: Workspace, path: str, imports: tuple[str, ...]
+) -> tuple[LaunchFile | None, tuple[str, ...]]:  # fmt: skip
+    """The facts of a launch file in Python with what modules of the workspace give it, and the paths of these; None
+    where it imports none. imports: as its facts have them."""
+    helped, size = None, 0
+    helpers = _find_helpers(workspace, path, imports)
+    while size < len(helpers) <= _MOST_HELPERS:
+        size = len(helpers)
+        sources = {name: (workspace.read(place), package) for name, (place, package) in helpers.items()}
+        most = find_size_limit("flow_launch_python")
+        helped = extract_python(
+            workspace.read(path), {name: row for name, row in sources.items() if len(row[0]) <= most}
+        )
+        helpers = _find_helpers(workspace, path, helped.imports)
+    return helped, tuple(sorted({place for place, _ in helpers.values()}))
+
+
+def _find_helpers(workspace: Workspace, path: str, imports: Iterable[str]) -> dict[str, tuple[str, str]]:
+    """The modules of the workspace among what a file imports, by their dotted names: the path, and the package that
+    relative imports in it are of."""
+    modules = _list_modules(workspace)
+    owner = workspace.find_owning_package(path)
+    found: dict[str, tuple[str, str]] = {}
+    for written in imports:
+        for name in (written, written.rpartition(".")[0]):
+            places = modules.get(name, ())
+            own = [place for place, package in places if package == owner]
+            # What is in no package of Python is found by programs beside it alone.
+            chosen = own or ([place for place, _ in places] if "." in name else [])
+            if len(chosen) == 1:
+                inside = chosen[0].endswith("/__init__.py")
+                found[name] = chosen[0], name if inside else name.rpartition(".")[0]
+    return found
+
+
+@cache_in_derived
+def _list_modules(workspace: Workspace) -> dict[str, list[tuple[str, str]]]:
+    """Path and package of the Python files of a workspace, by the names that they can be imported by."""
+    files = {path: package.name for package in workspace for path in package.files if path.endswith(".py")}
+    found: dict[str, list[tuple[str, str]]] = {}
+    for path, package in sorted(files.items()):
+        folder, _, name = path.rpartition("/")
+        parts = [] if name == "__init__.py" else [name.removesuffix(".py")]
+        while f"{folder}/__init__.py" in files:
+            folder, _, name = folder.rpartition("/")
+            parts.insert(0, name)
+        if parts:
+            found.setdefault(".".join(parts), []).append((path, package))
+    return found
 
 
 def classify_launch_file(path: str) -> str:
@@ -92,8 +160,21 @@ class Instance(NamedTuple):
     uncertain: tuple[str, ...]
 
     def remap_name(self, name: str, ros: int, kind: str = "topic") -> str:
-        """A name as the code has it, after the remappings of this start; full."""
-        pairs = [(r.old.value, _fill(r.new)) for r in self.remaps if r.old.value is not None]
+        """A name as the code has it, after the remappings of this start; full. It is known in part where a remapping
+        under an undecided condition gives it another name."""
+        given = self.started.conditions
+        sure = [r for r in self.remaps if r.is_sure(given)]
+        names = [self._apply(name, sure, ros, kind)]
+        if len(sure) < len(self.remaps):
+            for one in self.remaps:
+                if not one.is_sure(given):
+                    names.append(self._apply(name, [r for r in self.remaps if r is one or r in sure], ros, kind))
+        found = tuple(dict.fromkeys(names))
+        shown = " or ".join(each[1:] for each in found)
+        return found[0] if len(found) == 1 else f"/{make_open_part(f'<{shown}>')}"
+
+    def _apply(self, name: str, remaps: Iterable[Remap], ros: int, kind: str) -> str:
+        pairs = [(r.old.value, _fill(r.new)) for r in remaps if r.old.value is not None]
         if ros == 1:
             return remap_ros1_name(name, self.name, pairs)
         namespace, _, own = self.name.rpartition("/")
@@ -110,9 +191,15 @@ def make_instance(all_started: Launched, own_name: str, started: Started, own_na
     full = join_name("/" + (_fill(started.namespace) or own_namespace).lstrip("/"), name)
     one = started.generation == 1
     given = all_started.server if one else all_started.collect_parameters(started, full)
-    settings = {key: _fill(one.text) for key, one in given.items()}
+    settings = {key: _fill_setting(one, started) for key, one in given.items()}
     uncertain = (*started.conditions, *(r for r in (*started.name.reasons, *started.namespace.reasons) if r))
     return Instance(started, full, settings, started.remaps, uncertain)
+
+
+def _fill_setting(one: LaunchParameter, started: Started) -> str:
+    if one.is_sure(started.conditions):
+        return _fill(one.text)
+    return make_open_part(f"<{one.text.shown} or not given>")
 
 
 def _fill(text: LaunchText) -> str:

@@ -11,7 +11,7 @@ import msgspec
 
 from ....edges.groups import group_pairs
 from ..launch.result import Launched
-from .graph import LOST_INCLUDE, Graph
+from .graph import LOST_INCLUDE, Graph, Node
 from .launches import Launch
 
 _Row = TypeVar("_Row")
@@ -45,18 +45,21 @@ def merge_launches(code: Graph, launches: Sequence[Launch]) -> Graph:
     if not launches:
         return code
     programs = {start.program for launch in launches for start in launch.starts}
+    possible = [(launch.path, launch.possible) for launch in launches if launch.possible is not None]
+    programs |= {_get_program(node) for _, graph in possible for node in graph.nodes}
     started = {
         node.id
         for node in code.nodes
-        if node.kind != "library" and f"{node.package}/{node.executable or node.plugin}" in programs
+        if node.kind != "library" and _get_program(node) in programs
     }
-    graphs = [launch.graph for launch in launches]
+    sure = [(launch.path, launch.graph) for launch in launches]
+    graphs = [graph for _, graph in (*sure, *possible)]
 
     def merge(field: str) -> tuple[Any, ...]:
         own = (row for row in getattr(code, field) if row.node not in started)
         return _drop_repeats(chain(own, *(getattr(graph, field) for graph in graphs)))
 
-    by_launch = group_pairs((node.id, launch.path) for launch in launches for node in launch.graph.nodes)
+    by_launch = group_pairs((node.id, path) for path, graph in (*sure, *possible) for node in graph.nodes)
     nodes = {
         node.id: msgspec.structs.replace(node, launches=tuple(dict.fromkeys(by_launch[node.id])))
         for graph in reversed(graphs)
@@ -75,6 +78,10 @@ def merge_launches(code: Graph, launches: Sequence[Launch]) -> Graph:
         timers=merge("timers"),
         parameters=merge("parameters"),
     )
+
+
+def _get_program(node: Node) -> str:
+    return f"{node.package}/{node.executable or node.plugin}"
 
 
 def _drop_repeats(rows: Iterable[_Row]) -> tuple[_Row, ...]:

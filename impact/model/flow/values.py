@@ -27,6 +27,8 @@ LOST = "?"
 _MOST = 12
 _DEEPEST = 12
 _FAR = 6
+# Up to here it is asked of each value whether its branch is come to.
+_NEAR = 3
 # Expressions looked at for one value, and characters of it: each variable may be written from two others.
 _MOST_STEPS = 5_000
 # Of all values together; navigation2 takes 25,000. A value that comes after them is followed for a few steps only.
@@ -47,6 +49,7 @@ _LEAST: tuple[How, ...] = ("default", "launch", "given", "literal")
 # Kinds of guards that ask something, and conditions that are a variable alone.
 ASKING = frozenset(("if", "unless", "case"))
 _FLAG = re.compile(r"(!|not )?\s*\(?((?:self\.|this->|this\.)?[A-Za-z_]\w*)\)?")
+_WORD = re.compile(r"[A-Za-z_]\w*")
 _PUT = frozenset(("push_back", "emplace_back", "append"))
 # Functions that give a topic's type, and its name beside it.
 _TELLS_TOPIC = frozenset(("get_topic_class", "get_topic_type"))
@@ -112,7 +115,7 @@ class FlowValues:
 
     def _make_copy(self, *given) -> FlowValues:
         other = FlowValues(self.calls, *given)
-        for name in ("filled", "declared", "command_line", "origins"):
+        for name in ("filled", "declared", "command_line", "origins", "parameter_words"):
             other.__dict__[name] = getattr(self, name)
         other._budget, other.asked, other._decided = self._budget, self.asked, self._decided
         other.find_prefix, other._prefixes = self.find_prefix, self._prefixes
@@ -333,14 +336,34 @@ class FlowValues:
             lacking = unknown if self.arguments is None else _NOT_GIVEN
             yield lacking if text is None else FlowValue(text, "given" if how == "given" else "default")
             return
-        # What other objects have is not written in turn here.
+        # What other objects have is not written in turn here, except where it is written just before.
         at = 0 if "." in path.removeprefix("this.") else line
+        last = self._find_written_before(path, fn, line) if line and not at else None
+        if last is not None:
+            yield from self._evaluate(last.value, fn, last.line, (*seen, variable))
+            return
         found = list(self.evaluate_variable(variable, fn, (*seen, variable), self._find_origins(path, fn), at, line))
         if found:
             yield from found
         else:
             how = "given" if "." in path and self.command_line.is_parsed(path, fn) else "unresolved"
             yield FlowValue(None, how, f"nothing tells what `{path}` is")
+
+    def _find_written_before(self, path: str, fn: Fn, line: int) -> Assignment | None:
+        """The assignment to a member of another object that a line of a function surely comes after, where nothing
+        between them names the object; None for none."""
+        around = list_guards_around(fn, _find_guard(fn, line))
+        rows = [each for each in fn.assigned.get(path, ()) if each.operator == "=" and each.line < line]
+        last = max(rows, key=lambda each: each.line, default=None)
+        if last is None or (last.guard >= 0 and last.guard not in around) or _mentions(last.value, path):
+            return None
+        root = path.rpartition(".")[0]
+        targets = (each.target for each in fn.facts.assignments if last.line < each.line < line)
+        calls = (call for call in fn.facts.calls if last.line < call.line < line)
+        named = any(root == target or root.startswith(f"{target}.") for target in targets) or any(
+            call.callee.startswith(f"{root}.") or any(_mentions(one, root) for one in call.arguments) for call in calls
+        )
+        return None if named else last
 
     def _find_origins(self, path: str, fn: Fn) -> Origins | None:
         """The origins of the objects of which a path names a member, None where they may be any of their class."""
@@ -375,7 +398,10 @@ class FlowValues:
         begun = max((each.line for each in sure), default=0)
         filled = self._list_filled(variable, seen, origins)
         sure_filled = [use for use, values in filled if use.fn is fn and use.call.guard < 0 and _is_sure(values)]
-        remade = any(use.call.line < filled_before for use in sure_filled)
+        passed_on = list(self._evaluate_references(variable, seen)) if not rows or variable.kind == "local" else []
+        remade = any(use.call.line < filled_before for use in sure_filled) or (
+            _is_of_parameters(passed_on) and self._is_passed_before(variable, fn, filled_before)
+        )
         # In Python that is an assignment too.
         if not begun and not given and not remade and (not rows or fn.source.facts.language == "cpp"):
             found.add(self._evaluate_beginning(variable, fn, seen), rank=0)
@@ -387,8 +413,7 @@ class FlowValues:
         for use, values in filled:
             if not (use.fn is fn and use.call.line < line):
                 found.add(values, rank=2, stays=True)
-        if not rows or variable.kind == "local":
-            found.add(self._evaluate_references(variable, seen), rank=3, stays=True)
+        found.add(_mark_unknown(passed_on), rank=3, stays=True)
         if variable.kind == "local" and not begun:
             found.add(self._evaluate_parameters(variable, fn, seen), rank=4)
         steps: list[tuple[int, Assignment | FrameworkCall, list[FlowValue]]] = [
@@ -474,7 +499,7 @@ class FlowValues:
             # What a parameter that surely has a value is read into is worth nothing else any more.
             if any(each.line < use.call.line and each.guard == use.call.guard for use in sure):
                 continue
-            if found.may_run(each.guard):
+            if self._decide_branch(each.guard, writer, seen).holds is not False and found.may_run(each.guard):
                 tested = found.exclude(each.guard) or tested
                 found.add(_mark_unknown(self._evaluate_written(each, writer, origins, seen)), each.guard)
         return found.list_values() if tested else _restore_alone(found.list_values())
@@ -483,8 +508,11 @@ class FlowValues:
         self, each: Assignment, fn: Fn, found: ReachingValues, origins: Origins | None, seen: tuple
     ) -> None:  # fmt: skip
         """Goes on with an assignment in the function that reads the variable later."""
-        if not found.may_run(each.guard):
+        branch = self._decide_branch(each.guard, fn, seen)
+        if branch.holds is False or not found.may_run(each.guard):
             return
+        # What the launch opens surely runs.
+        guard = -1 if branch.holds else each.guard
         if each.operator == "+=" and _is_string(each.value) and found.is_counted(each.guard):
             added = list(self._evaluate(each.value, fn, each.line, seen))
             values = [_join((one.value, more)) for one in found.held[:_MOST] for more in added[:_MOST]][:_MOST]
@@ -493,9 +521,41 @@ class FlowValues:
         else:
             values = _mark_unknown(self._evaluate_written(each, fn, origins, seen))
         if each.operator in ("=", "+=") and "." not in each.target.removeprefix("this."):
-            found.assign(values, each.guard)
+            found.assign(values, guard)
         else:
-            found.add(values, each.guard)
+            found.add(values, guard)
+
+    def _decide_branch(self, guard: int, fn: Fn, seen: tuple) -> DecidedCondition:
+        """Whether a place in a function is come to, as far as the launch decides it by parameters, or by how many
+        arguments it gives; holds is None for all else, and for what is asked for by the way."""
+        if guard < 0 or len(seen) > _NEAR or not (self.settings or self.arguments):
+            return DecidedCondition()
+        opens = True
+        for place in list_guards_around(fn, guard):
+            one = fn.facts.guards[place]
+            number = None if self.arguments is None else self.command_line.decide_number(one, self.arguments)
+            asks = one.kind in ASKING and not self.parameter_words.isdisjoint(_WORD.findall(one.text))
+            decided = self._decide_guard(one, fn, seen) if asks and not _is_asking(one, fn, seen) else None
+            if number is not None:
+                decided = DecidedCondition(number, frozenset(("given",)))
+            if decided is None or not decided.is_given or decided.holds is None:
+                opens = False
+            elif not decided.holds:
+                return decided
+        return DecidedCondition(opens or None)
+
+    @cached_property
+    def parameter_words(self) -> frozenset[str]:
+        """The last parts of the names of variables that parameters are read into."""
+        uses = self.calls.select_uses("parameter")
+        words = {get_tail(use.call.target) for use in uses if use.call.target}
+        words.update(variable.name for variable in self.filled)
+        asked = group_pairs((use.fn, f"{use.call.callee}()") for use in uses if not use.call.target)
+        for fn, callees in asked.items():
+            # `self.mode = self.get_parameter("mode").value`
+            rows = (each for each in fn.facts.assignments if each.target and "()" in each.value.text)
+            words.update(get_tail(each.target) for each in rows if each.value.text.startswith(tuple(callees)))
+        return frozenset(words)
 
     def _evaluate_written(
         self, each: Assignment, writer: Fn, origins: Origins | None, seen: tuple
@@ -528,7 +588,18 @@ class FlowValues:
                 if place < len(parameters) and "&" in parameters[place].type and "const" not in parameters[place].type:
                     inner = self.code.identify(parameters[place].name, target)
                     if inner not in seen:
-                        yield from self.evaluate_writes(inner, (*seen, inner))
+                        # Through this call alone.
+                        values = self.limit_to_calls({**self.way, target: call})
+                        values._left = self._left
+                        yield from values.evaluate_writes(inner, (*seen, inner))
+                        self._left = values._left
+
+    def _is_passed_before(self, variable: Variable, fn: Fn, line: int) -> bool:
+        """Whether a variable is surely passed on before a line of a function is come to, 0 for any."""
+        return any(
+            call.guard < 0 and (caller is not fn or not line or call.line < line)
+            for caller, call, _ in self.code.list_passed(variable)
+        )
 
     def evaluate_writes(self, variable: Variable, seen: tuple) -> Iterator[FlowValue]:
         """What is written into a variable, where it stands, or fills it from a parameter."""
@@ -594,13 +665,15 @@ class FlowValues:
     def _call(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         last = get_tail(value.text)
         head = value.text.rpartition(".")[0] if "." in value.text else ""
-        if last in _NODE_NAME and not value.parts:
+        # A method of the code may be called the same.
+        own = last in _NODE_NAME | _NODE_NAMESPACE and self.code.list_targets(value.text, fn)
+        if last in _NODE_NAME and not value.parts and not own:
             yield FlowValue(NODE)
             return
-        if last in _NODE_NAMESPACE and not value.parts:
+        if last in _NODE_NAMESPACE and not value.parts and not own:
             yield FlowValue(NAMESPACE)
             return
-        if last in _SAME and head:
+        if head and (last in _SAME or (last == "get" and value.receiver is not None and not value.parts)):
             if value.receiver is not None and value.receiver.kind == "call":
                 yield from self._evaluate(value.receiver, fn, line, seen)
             elif head.endswith("()"):
@@ -629,7 +702,8 @@ class FlowValues:
         while arguments is None and get_tail(callee) in _SAME and (head := callee.rpartition(".")[0]).endswith("()"):
             callee = head.removesuffix("()")
         near = [call for call in fn.facts.calls if call.callee == callee]
-        near.sort(key=lambda call: (abs(call.line - line), call.arguments != arguments))
+        # What stands in an expression is not before it.
+        near.sort(key=lambda call: (call.line < line, abs(call.line - line), call.arguments != arguments))
         if arguments is not None:
             near = [call for call in near if call.arguments == arguments] or near
         for call in near[:1]:
@@ -659,10 +733,13 @@ class FlowValues:
     def _evaluate_returned(self, each: Assignment, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
         """What a function returns at one place, nothing where it does not come there."""
         guards = [fn.facts.guards[place] for place in list_guards_around(fn, each.guard)]
-        asked = [(guard, self._decide_guard(guard, fn, seen)) for guard in guards if guard.kind in ASKING]
+        # What follows a `try` runs where nothing is thrown.
+        asking = [guard for guard in guards if guard.kind in ASKING and not guard.text.startswith("catch (")]
+        asked = [(guard, self._decide_guard(guard, fn, seen)) for guard in asking]
         if any(decided.holds is False for _, decided in asked):
             return
         unknown = [spell_condition(guard.kind, guard.text) for guard, decided in asked if decided.holds is None]
+        unknown += [f"catch ({guard.text})" for guard in guards if guard.kind == "catch"]
         hows: frozenset[How] = frozenset(how for _, decided in asked for how in decided.hows)
         found = self._evaluate(each.value, fn, each.line, seen)
         yield from _put_under(found, DecidedCondition(None, hows), " && ".join(reversed(unknown)))
@@ -804,6 +881,12 @@ def _is_sure(values: list[FlowValue]) -> bool:
     return bool(values) and all(one.how in ("launch", "default") for one in values)
 
 
+def _is_of_parameters(values: list[FlowValue]) -> bool:
+    """Whether values are those of parameters alone, one of which is known."""
+    known = [one for one in values if one.text is not None and not one.only_if]
+    return _is_sure(known) and all(one.how == "given" for one in values if one.text is None)
+
+
 def _take_first(values: Iterator[FlowValue]) -> list[FlowValue]:
     """The first different values. What comes after them is not worked out."""
     found: dict[FlowValue, None] = {}
@@ -845,6 +928,11 @@ def _begins_turn(each: Assignment, fn: Fn) -> bool:
 def _is_declared_on(each: Assignment, line: int) -> bool:
     """Whether an assignment declares a variable on a line, for what stands behind it there."""
     return each.line == line and bool(each.type) and not _mentions(each.value, each.target)
+
+
+def _is_asking(guard: Guard, fn: Fn, seen: tuple) -> bool:
+    """Whether it is being worked out if a guard holds."""
+    return ("asks", fn, guard.line, guard.outer) in seen
 
 
 def _find_guard_before(fn: Fn, line: int) -> int:

@@ -24,6 +24,7 @@ from .join import Join
 from .launches import Launch
 from .nodes import BuiltPackage, asks_for_name, find_entry_point
 from .plugins import assign_plugins, list_plugin_loads
+from .simulated import add_simulated
 from .system import ChosenLaunch, join_launched, merge_launches
 from .uncompiled import find_uncompiled
 
@@ -63,7 +64,8 @@ class WorkspaceFlow:
     def system(self) -> Graph:
         """The graph of what its launch files start, and of the programs that none of them does."""
         launches = self.launches
-        return assign_plugins(merge_launches(self.graph, launches), list_plugin_loads(self._workspace))
+        found = assign_plugins(merge_launches(self.graph, launches), list_plugin_loads(self._workspace))
+        return add_simulated(found, self._workspace)
 
     @cached_property
     def callers(self) -> Callers:
@@ -175,10 +177,16 @@ def _find_scripts(package: Package, files: Mapping[str, FlowFile]) -> dict[str, 
             if where:
                 found[name] = where
     reached = {where.partition(":")[0] for where in found.values()}
-    programs = {item for install in package.build.installs if install.kind == "programs" for item in install.items}
+    # With the name that a program is installed under.
+    programs = {
+        item: install.rename
+        for install in package.build.installs
+        if install.kind == "programs"
+        for item in install.items
+    }
     runs = [path for path in package.linked.files if path in files and _runs(files[path])]
-    for path in (*sorted(programs & files.keys()), *runs):
-        name = path.rpartition("/")[2]
+    for path in (*sorted(programs.keys() & files.keys()), *runs):
+        name = programs.get(path) or path.rpartition("/")[2]
         if path not in reached and name not in ("setup.py", "conf.py"):
             found.setdefault(name, path)
             reached.add(path)
@@ -222,11 +230,12 @@ def make_graph(
     started them.
     """
     if chosen is not None:
-        from .started import follow_workspace_launch
+        from .bridges import add_bridges
+        from .started import InWorkspace, follow_workspace_launch
 
         start = join_launched([follow_workspace_launch(workspace, one.path, one.arguments) for one in chosen])
         code = get_flow(workspace).code
-        return code.build(root, rev, _list_unread(code), start)
+        return add_bridges(code.build(root, rev, _list_unread(code), start), start, InWorkspace(workspace))
 
     def make() -> Graph:
         code = get_flow(workspace).code

@@ -34,7 +34,8 @@ from .text import (
 
 
 class ActionScope(msgspec.Struct, eq=False):
-    """What holds where an action runs. open: how many undecided conditions stood when it began."""
+    """What holds where an action runs. open: how many undecided conditions stood when it began. maybe: values of
+    arguments that may not have been set."""
 
     arguments: dict[str, LaunchText]
     environment: dict[str, LaunchText]
@@ -43,12 +44,13 @@ class ActionScope(msgspec.Struct, eq=False):
     remaps: list[Remap] = []
     settings: list[LaunchParameter | SettingFile] = []
     private: list[Action] = []
+    maybe: dict[str, LaunchText] = {}
 
     def make_inner(self, open_: int) -> ActionScope:
         """A copy, whose changes do not reach this one."""
         return ActionScope(
             dict(self.arguments), dict(self.environment), open_, self.namespace, list(self.remaps),
-            list(self.settings), list(self.private),
+            list(self.settings), list(self.private), dict(self.maybe),
         )  # fmt: skip
 
 

@@ -57,7 +57,8 @@ def follow(
         launch.include((package, posixpath.normpath(path).lstrip("/")))
     files, done = tuple(dict.fromkeys(launch.files)), most - max(0, launch.budget)
     declared, settings = frozenset(launch.declared), tuple(launch.parameter_files)
-    return Launched(tuple(launch.started), launch.server, files, declared, done, settings, tuple(launch.outside))
+    outside = tuple(launch.outside)
+    return Launched(tuple(launch.started), launch.server, files, declared, done, settings, outside, launch.left_out)
 
 
 class _Launch(Filling):
@@ -84,11 +85,12 @@ class _Launch(Filling):
         self.server: dict[str, LaunchParameter] = {}
         self.files: list[tuple[str, str]] = []
         self.declared: set[str] = set()
+        self.left_out = False
 
     def include(self, place: tuple[str, str], action: Action | None = None) -> None:
         """Follows a file that an action includes; without one the file that is launched."""
         file = self.sources.find_launch_file(*place)
-        if file is None and action is not None:
+        if file is None and action is not None and action.get("optional") is None:
             self.note_outside(wrap(place[0]), wrap(place[1]), action)
         if file is None or len(self.chain) > DEEPEST or self.chain[:-1].count(place) > 3:
             return
@@ -96,17 +98,38 @@ class _Launch(Filling):
         generation = file.generation or self.generation
         if action is not None and generation == 1:
             self.scope = self.make_ros1_scope(action)
-        elif action is not None:
+        # What it sets is sure for all that it starts, though not for what follows it.
+        uncertain = action is not None and generation == 2 and self.is_uncertain()
+        if uncertain:
+            self.scope = self.scope.make_inner(len(self.open))
+        if action is not None and generation == 2:
             # One after the other: the value of one argument may name an argument given before it.
             for name, text in self.list_passed(action):
                 self.scope.arguments[name] = text
+                self.scope.maybe.pop(name, None)
         self.chain.append(place)
         self.files.append(place)
         self.package, self.path = place
         self.generation = generation
         self.run(file.actions)
         self.chain.pop()
+        inner = self.scope
         self.scope, self.package, self.path, self.generation = before
+        if uncertain:
+            self.leave(inner)
+
+    def leave(self, inner: ActionScope) -> None:
+        """Goes on after actions that share this scope and may not have run at all. inner: what held after them."""
+        scope, open_ = self.scope, tuple(self.open[self.scope.open :])
+        for name, text in inner.arguments.items():
+            if scope.arguments.get(name) != text:
+                self.set(name, text)
+        scope.environment = inner.environment
+        self.push(inner.namespace)
+        for one in inner.remaps[len(scope.remaps) :]:
+            scope.remaps.append(one._replace(conditions=(*open_, *one.conditions)))
+        for one in inner.settings[len(scope.settings) :]:
+            scope.settings.append(one._replace(conditions=(*open_, *one.conditions)))
 
     def note_outside(self, package: LaunchText, path: LaunchText, action: Action) -> None:
         """Notes an include of a file that is not read, with what it is given. package: empty where the path is not that
@@ -140,7 +163,9 @@ class _Launch(Filling):
             if self.budget <= 0:
                 return
             open_ = self.decide(action.conditions)
-            if open_ is not None:
+            if open_ is None:
+                self.left_out |= action.kind in _STARTING
+            else:
                 mark = len(self.open)
                 self.open += open_
                 _DOING.get(action.kind.replace("-", "_"), _Launch.do_pass)(self, action)
@@ -170,8 +195,12 @@ class _Launch(Filling):
             before = self.scope.arguments.get(name)
             if before is not None and before.value is not None and before.value == text.value:
                 return
+            if before is None:
+                self.scope.maybe[name] = text
             shown = text.shown if before is None else f"{before.shown} or {text.shown}"
             text = make_unknown(shown, f"`{name}` is set only if {self.open[-1]}")
+        else:
+            self.scope.maybe.pop(name, None)
         self.scope.arguments[name] = text
 
     def read_name(self, action: Action) -> str | None:
@@ -190,6 +219,12 @@ class _Launch(Filling):
                 self.scope.arguments[name] = make_unknown(f"{name}", reason)
             else:
                 self.set(name, self.fill(default))
+        elif default is not None and name in self.scope.maybe:
+            before, text = self.scope.maybe.pop(name), self.fill(default)
+            if before.value is None or before.value != text.value:
+                reasons = (*before.reasons, *text.reasons, *self.scope.arguments[name].reasons)
+                text = make_unknown(f"{before.shown} or {text.shown}", *reasons)
+            self.scope.arguments[name] = text
         self.declared.add(name)
 
     def do_let(self, action: Action) -> None:
@@ -205,7 +240,13 @@ class _Launch(Filling):
     def do_group(self, action: Action) -> None:
         scoped = action.get("scoped")
         if self.generation == 2 and scoped is not None and parse_truth(self.fill(scoped)) is False:
+            outer = self.scope
+            if self.is_uncertain():
+                self.scope = outer.make_inner(len(self.open))
             self.run(action.children)
+            inner, self.scope = self.scope, outer
+            if inner is not outer:
+                self.leave(inner)
             return
         outer, self.scope = self.scope, self.scope.make_inner(len(self.open))
         forwarding = action.get("forwarding")
@@ -225,8 +266,10 @@ class _Launch(Filling):
         return resolve(base if base.value != "" else wrap("/"), namespace)
 
     def do_namespace(self, action: Action) -> None:
-        pushed = self.read_field(action, "namespace")
-        namespace = self.make_inner_namespace(pushed)
+        self.push(self.make_inner_namespace(self.read_field(action, "namespace")))
+
+    def push(self, namespace: LaunchText) -> None:
+        """Makes a namespace, which is absolute, the one that holds; one under an undecided condition is not known."""
         if self.is_uncertain() and namespace.value != self.scope.namespace.value:
             namespace = make_unknown(
                 f"{self.scope.namespace.shown or '/'} or {namespace.shown}", f"pushed only if {self.open[-1]}"
@@ -310,7 +353,8 @@ class _Launch(Filling):
         if name is None:
             return None
         text, at = self.read_field(action, "value"), self.locate_line(action.line)
-        return LaunchParameter(name, text, at, tuple(self.open[self.scope.open :]))
+        type_ = find_literal(action.get("type")) or ""
+        return LaunchParameter(name, text, at, tuple(self.open[self.scope.open :]), type=type_)
 
     def make_setting_file(self, action: Action) -> SettingFile:
         """A parameter file of a ROS 2 node."""
@@ -343,17 +387,20 @@ class _Launch(Filling):
         if name.value is None:
             return
         given = next((key for key in OF_RUNNING if action.get(key) is not None), "")
+        type_ = find_literal(action.get("type")) or ""
         if not given:
             text = self.read_field(action, "value")
         else:
             text = make_unknown(self.read_field(action, given).shown, f"it is {OF_RUNNING[given]}")
-        self.put(_fill_open(full), text, action.line)
+        self.put(_fill_open(full), text, action.line, type_=type_)
 
-    def put(self, name: str, text: LaunchText, line: int, source: ShareLine | None = None) -> None:
+    def put(
+        self, name: str, text: LaunchText, line: int, source: ShareLine | None = None, type_: str = ""
+    ) -> None:  # fmt: skip
         before = self.server.pop(name, None)
         if self.open and before is not None and before.text.value != text.value:
             text = make_unknown(f"{before.text.shown} or {text.shown}", f"set only if {self.open[-1]}")
-        self.server[name] = LaunchParameter(name, text, self.locate_line(line), tuple(self.open), source)
+        self.server[name] = LaunchParameter(name, text, self.locate_line(line), tuple(self.open), source, type_)
 
     def serve_file(self, action: Action, namespace: LaunchText) -> None:
         """Does a <rosparam>."""
@@ -382,7 +429,8 @@ class _Launch(Filling):
         for entry in self.substitute_entries(entries or ()) if fill else entries or ():
             key = "/".join(part.strip("/") for part in (full or "/", *entry.path) if part.strip("/"))
             source = ShareLine(*place, entry.line) if place is not None else None
-            self.put(f"/{key}", wrap(str(entry.value)), action.line, source)
+            type_ = "str" if isinstance(entry.value, str) else ""
+            self.put(f"/{key}", wrap(str(entry.value)), action.line, source, type_)
 
     def do_node(self, action: Action) -> None:
         if self.generation == 1:
@@ -576,6 +624,9 @@ class _Launch(Filling):
 
 
 _INSTALLED = re.compile(r"\$\(prefix ([\w.-]+)\)/lib/\1/([^/]+)\Z")
+_STARTING = frozenset(
+    ("node", "lifecycle", "test", "container", "composable", "load", "include", "group")
+)  # fmt: skip
 _OF_NODE = frozenset(("remap", "parameter", "parameter-file"))
 _DOING = collect_methods(_Launch, "do_")
 

@@ -1,14 +1,16 @@
 """What following a launch gives: the nodes it starts, with all that the launch file gives them, and what is unknown."""
 
+from __future__ import annotations
+
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from functools import lru_cache
 from typing import NamedTuple, Protocol
 
 from ...facts.launch.actions import LaunchFile
 from ...facts.launch.parameter_files import ParameterEntry, ParameterFile
 from ..flow.names import normalise
-from .text import LaunchText, wrap
+from .text import LaunchText, make_unknown, wrap
 
 EMPTY = wrap("")
 
@@ -40,16 +42,36 @@ class Remap(NamedTuple):
     at: ShareLine
     conditions: tuple[str, ...] = ()
 
+    def is_sure(self, given: Collection[str]) -> bool:
+        """Whether it holds wherever some conditions do."""
+        return set(given).issuperset(self.conditions)
+
 
 class LaunchParameter(NamedTuple):
     """A parameter. name: private to its node (`scan_topic`), or global on ROS 1's parameter server (`/robot/scan`).
-    conditions: as in Started. source: the line of the parameter file that it comes from."""
+    conditions: as in Started. source: the line of the parameter file that it comes from. type: what its value is made
+    into, as the launch file says it; empty where YAML's rules decide."""
 
     name: str
     text: LaunchText
     at: ShareLine
     conditions: tuple[str, ...] = ()
     source: ShareLine | None = None
+    type: str = ""
+
+    def is_sure(self, given: Collection[str]) -> bool:
+        """As for Remap."""
+        return set(given).issuperset(self.conditions)
+
+    def put_over(self, before: LaunchParameter | None, given: Collection[str]) -> LaunchParameter:
+        """The parameter where it is set after another value. given: the conditions that hold."""
+        if before is None or self.is_sure(given):
+            return self
+        if before.text.value is not None and before.text.value == self.text.value:
+            return before
+        reason = f"set only if {self.conditions[-1]}"
+        text = make_unknown(f"{before.text.shown} or {self.text.shown}", *before.text.reasons, reason)
+        return self._replace(text=text, conditions=before.conditions)
 
 
 class SettingFile(NamedTuple):
@@ -95,7 +117,9 @@ class Launched(NamedTuple):
     """All that a launch does. server: ROS 1's parameters by their global names. files: (package, path) of the launch
     files read; parameter_files: of the parameter files. arguments: those that they declare. actions: how many were
     done. outside: launch files that are included and cannot be read, as of other packages or by a path that is not
-    known: executable is their path, settings are their arguments and the parameter files that these name."""
+    known: executable is their path, settings are their arguments and the parameter files that these name. left_out:
+    something is not started, or not included, since a condition does not hold. possible: what is started if such
+    conditions hold, as far as somebody asked for it."""
 
     started: tuple[Started, ...]
     server: Mapping[str, LaunchParameter]
@@ -104,6 +128,8 @@ class Launched(NamedTuple):
     actions: int = 0
     parameter_files: tuple[tuple[str, str], ...] = ()
     outside: tuple[Started, ...] = ()
+    left_out: bool = False
+    possible: Launched | None = None
 
     def collect_parameters(self, started: Started, full: str) -> dict[str, LaunchParameter]:
         """The private parameters of a node. full: its full name; of one that is empty, only what holds for any node."""
@@ -115,13 +141,12 @@ class Launched(NamedTuple):
         found: dict[str, LaunchParameter] = {}
         for setting in started.settings:
             if isinstance(setting, LaunchParameter):
-                found.pop(setting.name, None)
-                found[setting.name] = setting
+                found[setting.name] = setting.put_over(found.pop(setting.name, None), started.conditions)
                 continue
             for key, entry in select_file_values(setting, full).items():
-                found.pop(key, None)
                 source = ShareLine(*setting.source, entry.line) if setting.source is not None else None
-                found[key] = LaunchParameter(key, wrap(str(entry.value)), setting.at, setting.conditions, source)
+                one = LaunchParameter(key, wrap(str(entry.value)), setting.at, setting.conditions, source)
+                found[key] = one.put_over(found.pop(key, None), started.conditions)
         return found
 
 

@@ -25,16 +25,27 @@ Not reported
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
 from collections.abc import Iterator
 
-from ....edges.memory import cache_in_derived
-from ...facts.cpp.tree_nodes import COMPUTED
 from ...model.misspelling import is_slip
 from ...model.package import ReferenceUse
 from ...targets.surface.surface import TREE_NODE
+from ...targets.tree_nodes import load_tree_nodes
+from ...targets.version import find_newest_up_to, parse
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, list_place_doubts, rule
-from .diagnosis import build_availability_texts, diagnose, find_missing, is_of_another_distro
+from .diagnosis import build_availability_texts, diagnose, find_missing, make_version_together
+from .tree_registrations import (
+    find_misspelt,
+    list_known_packages,
+    list_node_names,
+    list_own_nodes,
+    list_own_trees,
+    list_owners,
+    list_packages_along,
+    list_registered,
+    list_tree_files,
+    registers_computed,
+)
 
 
 @rule(
@@ -49,21 +60,18 @@ from .diagnosis import build_availability_texts, diagnose, find_missing, is_of_a
     },
 )
 def removed_tree_node(view: TargetView, package: Package):
-    by_file: dict[str, dict[str, ReferenceUse]] = {}
-    for use in package.linked.references:
-        if use.reference.kind == "tree node":
-            by_file.setdefault(use.at.path, {}).setdefault(use.reference.name, use)
-    files = frozenset(package.linked.files)
-    if not by_file or COMPUTED in _list_own(view):
+    if registers_computed(view):
         return
-    for path, uses in by_file.items():
-        if is_of_another_distro(view, path, files):
-            continue
-        along = _list_packages(view, frozenset(uses))
-        known = _list_own(view).union(_list_registered(view, along))
-        unknown = [name for name in uses if name not in known and name not in view.offers.surfaces.tree_nodes]
-        for name, use in uses.items():
-            if name not in known:
+    for _, uses in list_tree_files(view, package):
+        names = list_node_names(uses)
+        along = list_packages_along(view, names)
+        known = list_own_trees(view).union(list_own_nodes(view), list_registered(view, along))
+        unknown = [name for name in names if name not in known and not list_owners(view, name)]
+        reported: set[str] = set()
+        for use in uses:
+            name = use.reference.name
+            if use.reference.kind == "tree node" and name not in known and name not in reported:
+                reported.add(name)
                 yield from _find_problems(view, package, use, along, len(unknown) > 1)
 
 
@@ -74,13 +82,17 @@ def _find_problems(
     tree has other nodes that nobody is known to register, so that who registers them may register this one."""
     name = use.reference.name
     doubts = (*list_place_doubts(view, use.role), Doubt.LATE)
-    owners = view.offers.surfaces.tree_nodes.get(name, ())
+    owners = list_owners(view, name)
     there = [owner for owner in owners if owner in along]
-    found = find_missing(view, "plugin", name, there) if there else None
+    stored = [owner for owner in there if owner in view.offers.surfaces.tree_nodes.get(name, ())]
+    found = find_missing(view, "plugin", name, stored) if stored else None
     if found is not None and found.form != "never":
         # A new node is often called like another one that does something else.
         found = found._replace(alike=found.alike if is_slip(found.alike, name) else "")
         yield diagnose(found, use.at, name, package.name, doubts)
+        return
+    if there and not stored:
+        yield from _find_change(view, package, use, there[0], doubts)
         return
     for owner in owners:
         if owner not in along and (heir := _find_heir(view, owner, along)):
@@ -90,55 +102,33 @@ def _find_problems(
             return
     if owners or open_ended or any(name in one.linked.modelled for one in view.workspace):
         return
-    alike = [(known, owner) for known, owner in _list_registered(view, along).items() if is_slip(known, name)]
-    if len(alike) == 1:
-        ((known, owner),) = alike
+    alike = find_misspelt(view, along, name)
+    if alike is not None:
+        known, owner = alike
         data = {"upstream": owner, "version": view.target.find_version(owner) or "", "alike": known}
         yield Diagnostic(use.at, name, package.name, data, "misspelt", (*doubts, Doubt.INCOMPLETE))
 
 
-@cache_in_derived
-def _list_own(view: TargetView) -> frozenset[str]:
-    """The nodes that the workspace registers, and the trees that it defines."""
-    return frozenset(name for one in view.workspace for name in (*one.linked.tree_nodes, *one.linked.trees))
-
-
-@cache_in_derived
-def _list_nodes_by_package(view: TargetView) -> dict[str, set[str]]:
-    """The nodes that released packages registered in any version."""
-    found: dict[str, set[str]] = defaultdict(set)
-    for name, owners in view.offers.surfaces.tree_nodes.items():
-        for owner in owners:
-            found[owner].add(name)
-    return found
-
-
-_TELLING = 3
-"""Nodes of a tree that one package alone registers, from which on the tree is written for that package."""
-
-
-@cache_in_derived
-def _list_packages(view: TargetView, names: frozenset[str]) -> frozenset[str]:
-    """The packages that register nodes and come along with the workspace, or with one that a tree of some nodes is
-    evidently written for."""
-    known = _list_nodes_by_package(view)
-    owners = view.offers.surfaces.tree_nodes
-    sole = Counter(owners[name][0] for name in names if len(owners.get(name, ())) == 1)
-    meant = [owner for owner, count in sole.items() if count >= _TELLING and view.is_available(owner)]
-    return view.brought_to_workspace.union(view.list_transitive(meant)).intersection(known)
-
-
-@cache_in_derived
-def _list_registered(view: TargetView, packages: frozenset[str]) -> dict[str, str]:
-    """The nodes that packages surely register on the target, each with its package."""
-    offers = (view.offers.find_package(name) for name in sorted(packages))
-    return {
-        plugin.name: offer.package
-        for offer in offers
-        if offer is not None
-        for plugin in offer.build.plugins
-        if plugin.base == TREE_NODE and plugin.sure
-    }
+def _find_change(
+    view: TargetView, package: Package, use: ReferenceUse, owner: str, doubts: tuple[Doubt | bool | None, ...]
+) -> Iterator[Diagnostic]:
+    """A node that other versions of a package register than the target's, as the table of nodes tells."""
+    name, version = use.reference.name, view.target.find_version(owner)
+    stored = load_tree_nodes().packages[owner]
+    here = find_newest_up_to(version, stored.versions) if version is not None else None
+    if version is None or here is None:
+        return
+    having = [one for one, nodes in stored.iterate_versions() if any(node.name == name for node in nodes.nodes)]
+    before = [one for one in having if parse(one) < parse(here)]
+    after = [one for one in having if parse(one) > parse(here)]
+    if before:
+        following = stored.versions.index(before[-1]) + 1
+        kind, since = "removed", stored.versions[following]
+    else:
+        kind, since = "not yet", after[0]
+    empty = dict.fromkeys(("replacement", "available", "moved_to", "alike", "detail"), "")
+    data = {**empty, "upstream": owner, "version": version, "since": since}
+    yield Diagnostic(use.at, name, package.name, data, kind, doubts, together=make_version_together(owner))
 
 
 def _find_other_name(view: TargetView, owner: str, name: str) -> str:
@@ -152,7 +142,7 @@ def _find_other_name(view: TargetView, owner: str, name: str) -> str:
 def _find_heir(view: TargetView, owner: str, along: frozenset[str]) -> str:
     """The package of those that come along which has most of the nodes of one that does not; empty where none has
     half of them."""
-    nodes = _list_nodes_by_package(view)
+    nodes = list_known_packages(view)
     common = {name: len(nodes[owner] & nodes[name]) for name in sorted(along)}
     best = max(common, key=lambda name: common[name], default="")
     return best if best and 2 * common[best] >= len(nodes[owner]) else ""

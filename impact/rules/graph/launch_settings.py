@@ -3,11 +3,11 @@
 from collections.abc import Callable, Iterable, Iterator
 from typing import TypeVar
 
-from ...model.flow.launches import GivenParameter, GivenRemapping, LaunchedNode
+from ...model.flow.launches import GivenParameter, GivenRemapping, LaunchedNode, RefusedValue
 from ...model.flow.workspace import get_flow
 from ...model.workspace import Workspace
 
-T = TypeVar("T", GivenRemapping, GivenParameter)
+T = TypeVar("T", GivenRemapping, GivenParameter, RefusedValue)
 
 
 def group_by_line(

@@ -2,7 +2,8 @@
 
 What it does
     Reports parameters that a launch file, or a parameter file it loads, sets for one node, and that the node's code
-    neither declares nor reads. All parameters of the node have to be known.
+    neither declares nor reads. All parameters of the node have to be known. In ROS 1, names are compared in full: one
+    that is set for the node, and read in the namespace of the node, is not the same.
 
 Why it breaks
     The value has no effect, and the node runs with its default: mostly the name is outdated.
@@ -35,6 +36,10 @@ from .unasked_parameters import find_unasked
             "`{program}` does not declare or read the parameter `{subject}`",
             help="remove it, or declare it in the node",
         ),
+        "namespace": Text(
+            "`{program}` reads the parameter `{read}`, and this sets `{full}`",
+            help="set `{read}`, or read `{full}`",
+        ),
         "several": Text(
             "`{program}` does not declare or read the parameter `{subject}` and {count} more that this line loads",
             help="remove them, or declare them in the node",
@@ -45,4 +50,4 @@ def unknown_parameter(workspace: Workspace):
     unknown = (found for found in find_unasked(workspace) if not found.data["replacement"])
     for first, *others in group_pairs((found.at, found) for found in unknown).values():
         data = {**first.data, "count": len(others)}
-        yield first._replace(data=data, kind="several" if others else "one")
+        yield first._replace(data=data, kind="several" if others else first.kind or "one")

@@ -16,7 +16,7 @@ Use instead
 
 Not reported
     Members of classes and variables of the file, which other code may use; reads whose result tells whether the
-    parameter is set.
+    parameter is set, also those into a value of any type (XmlRpcValue).
 """
 
 import re
@@ -28,6 +28,7 @@ from ..vocabulary import At, Diagnostic, Text, Workspace, rule
 
 _READS = frozenset(("getParam", "getParamCached", "param", "get_parameter", "get_parameter_or"))
 
+_ANY_TYPE = re.compile(r"\b(?:XmlRpcValue|rclcpp::Parameter)\b")
 _TEXT = re.compile(r'"[^"]*"')
 
 
@@ -63,4 +64,6 @@ def _list_reads(function: FlowFunction) -> Iterator[FlowCall]:
 def _is_only_declared(variable: str, lines: list[str]) -> bool:
     """Whether a function names a variable twice: where it is declared, and where the parameter is read into it."""
     named = [line for line in lines for _ in re.finditer(rf"\b{variable}\b", _TEXT.sub("", line))]
-    return len(named) == 2 and bool(re.match(rf"\s*[A-Za-z_][\w:<>, ]*[\w>]\s+{variable}\s*[;={{(]", named[0]))
+    if len(named) != 2 or _ANY_TYPE.search(named[0]):
+        return False
+    return bool(re.match(rf"\s*[A-Za-z_][\w:<>, ]*[\w>]\s+{variable}\s*[;={{(]", named[0]))

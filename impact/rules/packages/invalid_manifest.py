@@ -47,21 +47,21 @@ def invalid_manifest(workspace: Workspace):
     for package in workspace:
         manifest, path = package.manifest, package.linked.manifest_path
         misspelt = {}
-        for tag, text, line in manifest.unknown_tags:
+        for tag, text, line, column in manifest.unknown_tags:
             misspelt[line] = tag
             words = tag.replace("-", "_").replace("depends", "depend")
             known = words in TAGS[min(manifest.format, 3)]
             data = {"text": text, "format": manifest.format, "replacement": f"<{words}>" if words != tag else ""}
             tags = ((f"<{tag}>", f"<{words}>"), (f"</{tag}>", f"</{words}>"))  # where they stand in one line
             fix = tuple(Replace(path, line, 0, old, new) for old, new in tags) if known else ()
-            yield Diagnostic(At(path, line), tag, package.name, data, "tag", fix=fix)
+            yield Diagnostic(At(path, line, column), tag, package.name, data, "tag", fix=fix)
         for export in manifest.exports:
             if export.tag in ANY_FORMAT and export.text and export.text not in package.declared:
-                at, data = At(path, export.line), {"tag": export.tag}
+                at, data = At(path, export.line, export.column), {"tag": export.tag}
                 yield Diagnostic(at, export.text, package.name, data, "export", (Doubt.LATE,))
         for problem in manifest.problems:
             if problem.line not in misspelt:
-                at, data = At(path, problem.line), {"problem": problem.message}
+                at, data = At(path, problem.line, problem.column), {"problem": problem.message}
                 named = _NAMED.search(problem.message)  # what is at fault, such as a dependency
                 yield Diagnostic(at, named[1] if named else package.name or path, package.name, data, "problem")
         for condition, line in {d.condition: d.line for d in manifest.dependencies if d.condition}.items():

@@ -36,7 +36,8 @@ def other_generation(view: TargetView):
         return
     data = {"distro": view.target.distro, "build_type": first.build_type, "generation": 3 - view.target.ros}
     others = tuple(package.name for package in view.workspace if package.name != first.name)
-    yield Diagnostic(At(first.linked.manifest_path, first.manifest.line), first.name, first.name, data, also=others)
+    at = At(first.linked.manifest_path, first.manifest.line, first.manifest.column)
+    yield Diagnostic(at, first.name, first.name, data, also=others)
 
 
 def _is_other_generation(view: TargetView, package: Package) -> bool:

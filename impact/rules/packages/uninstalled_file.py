@@ -71,10 +71,12 @@ def _list_exported(package: Package) -> dict[str, At]:
     exports = [export for export in package.manifest.exports if not export.tag.startswith("rosdoc")]
     found = {}
     for export in exports:
-        values = [export.text, *(value for key, value in export.attributes.items() if key != "plugin")]
-        for name in (value.removeprefix("${prefix}/") for value in values):
+        values = [(export.text, (export.line, export.column))]
+        values += ((value, export.places[key]) for key, value in export.attributes.items() if key != "plugin")
+        for value, (line, column) in values:
+            name = value.removeprefix("${prefix}/")
             if posixpath.join(package.path, name) in package.files and find_folder_role(name) is None:
-                found[name] = At(package.linked.manifest_path, export.line)
+                found[name] = At(package.linked.manifest_path, line, column + len(value) - len(name))
     return found
 
 

@@ -67,7 +67,9 @@ def _list_descriptions(view: TargetView, package: Package, installs) -> Iterator
         value = export.attributes.get("plugin", "")
         if not value.startswith("${prefix}"):
             continue
-        at, file = At(package.linked.manifest_path, export.line), value[len("${prefix}/") :]
+        line, column = export.places["plugin"]
+        start = len("${prefix}/")
+        at, file = At(package.linked.manifest_path, line, column + start), value[start:]
         path = posixpath.normpath(posixpath.join(package.path, file))
         if view.target.ros == 2 and view.is_available(export.tag) and _is_left_out(package, installs, path):
             data = {"base": export.tag, "file": file}

@@ -61,9 +61,10 @@ def wrong_build_type(view: TargetView) -> Iterator[Diagnostic]:
         found = _find_fault(view, package) if view.reports_on(package.name) else None
         if found is not None:
             kind, subject, replacement = found
-            line = next((one.line for one in package.manifest.exports if one.text == subject), 1)
+            exports = package.manifest.exports
+            place = next(((one.line, one.column) for one in exports if one.text == subject), (1, 0))
             doubts = (Doubt.DISTURBS,) if kind == "none" and replacement == "ament_cmake" else ()
-            at = At(package.linked.manifest_path, line)
+            at = At(package.linked.manifest_path, *place)
             yield Diagnostic(at, subject, package.name, {"replacement": replacement}, kind, doubts)
 
 

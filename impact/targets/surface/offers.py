@@ -99,8 +99,11 @@ class Offers:
 
     def _list_libraries(self, package: str, ros: int) -> tuple[str, ...]:
         history = self.surfaces.find_history(package, ros)
-        build = history.build(history.versions[-1], ("libraries",)) if history is not None else None
-        return build.libraries if build is not None else ()
+        build = history.build(history.versions[-1], ("libraries", "targets")) if history is not None else None
+        if build is None:
+            return ()
+        targets = (target.name.rpartition("::")[2] for target in build.targets if target.kind in ("library", "module"))
+        return (*build.libraries, *targets)
 
     def has_plugin(self, package: str, name: str) -> bool | None:
         """Whether the newest stored version of a package has a plugin of this name or type; None where none is

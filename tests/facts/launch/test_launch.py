@@ -375,7 +375,8 @@ TREES = """\
 def test_nodes_of_behaviour_trees():
     facts = extract(TREES.encode(), "xml")
     assert [(r.kind, r.name, r.line) for r in facts.references] == [
-        ("tree node", "Sequence", 4), ("tree node", "Wave", 5), ("tree node", "SubTree", 7), ("tree node", "Wait", 8),
+        ("tree node", "Sequence", 4), ("tree node", "Wave", 5), ("tree port", "Wave times", 5),
+        ("tree node", "SubTree", 7), ("tree node", "Wait", 8),
     ]  # fmt: skip
     assert (facts.trees, facts.modelled) == (("Main", "Home"), ("Dance",))
     assert extract(b"<root><Sequence/></root>", "xml").references == ()

@@ -43,7 +43,7 @@ def test_a_node_is_not_called_by_what_options_replace():
         RCLCPP_COMPONENTS_REGISTER_NODE(Panel)
     """
     found = graph({"p/panel.cpp": text})
-    assert [node.name for node in found.nodes] == ["/panel"]
+    assert [node.name for node in found.nodes] == ["/<panel>"]
 
 
 def test_a_name_that_rospy_remaps():

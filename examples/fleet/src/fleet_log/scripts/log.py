@@ -17,7 +17,7 @@ class Log:
     def on_report(self, report):
         self.seen.append(report)
         last = self.seen[-1]
-        self.said.publish("log %.1f %s" % (last.battery, last.header.frame_id))
+        self.said.publish(f"log {last.battery:.1f} {last.header.frame_id}")
         if last.battery < 98:
             alarm = Report()
             alarm.driver = "log"
@@ -25,7 +25,8 @@ class Log:
             self.alarm.publish(alarm)
 
     def on_alarm(self, alarm):
-        self.said.publish("alarm " + str(alarm).replace("\n", "|"))
+        _, _, text = str(alarm).partition("state:")
+        self.said.publish("alarm " + text.replace("\n", "|"))
 
 
 if __name__ == "__main__":

@@ -8,11 +8,11 @@ from std_msgs.msg import String
 
 def on_archive(report):
     labels = [stop.place.label for stop in report.stops]
-    said.publish("archive %d %s %s" % (report.state, report.driver, labels))
+    said.publish(f"archive {report.state} {report.driver} {labels}")
 
 
 def on_track(track):
-    said.publish("sum %.1f" % sum(track.xs))
+    said.publish(f"sum {sum(track.xs):.1f}")
     report = Report(state=Report.DRIVING, driver="archive")
     report.stops = [Stop(seconds=3)]
     report.stops[0].place.label = "barn"

@@ -1,0 +1,1 @@
+"""Experiments on running nodes: how long messages take over a link, and how many are dropped."""

@@ -1,0 +1,430 @@
+"""Code before and after a change, and what is said of publishing: what only moved is no change, what is not known to
+have changed is not said to have."""
+
+from __future__ import annotations
+
+import pytest
+from rosimpact.impact.facts.cpp import flow as flow_cpp
+from rosimpact.impact.facts.python import flow as flow_python
+from rosimpact.impact.logic.changes import Side
+from rosimpact.impact.logic.history import PackageFile, PackageState
+from rosimpact.impact.logic.statements import digest_package
+from rosimpact.impact.logic.states import compare_sides
+
+Files = dict[str, str]
+
+CPP = """
+#include <ros/ros.h>
+struct State { bool ready() { if (ready_) { return true; } else { return false; } } bool ready_; bool idle_; };
+struct Sight { bool ready_; };
+class Talker {
+public:
+  Talker() {
+    pub_ = nh_.advertise<std_msgs::String>("out", 1);
+    sub_ = nh_.subscribe("in", 1, &Talker::onInput, this);
+    more_ = nh_.subscribe("more", 1, &Talker::onMore, this);
+  }
+  BODY
+  void onMore(const std_msgs::String& msg) {}
+  ros::NodeHandle nh_;
+  ros::Publisher pub_;
+  ros::Subscriber sub_, more_;
+  State state_;
+  std::vector<Item> items_;
+};
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "talker");
+  Talker talker;
+  ros::spin();
+}
+"""
+ON_INPUT = "void onInput(const std_msgs::String& msg) { %s }"
+
+PYTHON = """
+import rospy
+from std_msgs.msg import String
+
+class Talker:
+    def __init__(self):
+        self.pub = rospy.Publisher("out", String, queue_size=1)
+        self.other = make_other()
+        rospy.Subscriber("in", String, self.on_input)
+
+    def on_input(self, msg):
+        self.last = msg
+BODY
+
+if __name__ == "__main__":
+    rospy.init_node("talker")
+    Talker()
+    rospy.spin()
+"""
+
+
+def compare(old: Files, new: Files, names: tuple[str, str] = ("talk", "talk")) -> list[tuple[str, str]]:
+    """(kind, why) of all changes between two states of a package, rewordings left out."""
+    texts: dict[str, bytes] = {}
+    sides: list[Side] = []
+    for name, files in zip(names, (old, new), strict=True):
+        listed, facts = [], {}
+        for path, text in sorted(files.items()):
+            extract, kind = (flow_python.extract, "python") if path.endswith(".py") else (flow_cpp.extract, "cpp")
+            facts[path] = extract(text.encode())
+            listed.append(PackageFile(path, str(hash(text)), kind))
+            texts[str(hash(text))] = text.encode()
+        state = PackageState(name, "", 1, tuple(listed), b"")
+        sides.append(Side([(state, digest_package(state, facts))] if files else []))
+    found = compare_sides(sides[0], sides[1], dict, lambda file: texts[file.id])
+    return [(change.kind, change.why) for change in found if change.kind != "equivalent"]
+
+
+def compare_cpp(old: str, new: str) -> list[tuple[str, str]]:
+    return compare({"talker.cpp": CPP.replace("BODY", old)}, {"talker.cpp": CPP.replace("BODY", new)})
+
+
+def compare_python(old: str, new: str) -> list[tuple[str, str]]:
+    return compare({"talker.py": PYTHON.replace("BODY", old)}, {"talker.py": PYTHON.replace("BODY", new)})
+
+
+def say(statements: str) -> str:
+    return ON_INPUT % statements
+
+
+LOOP = "for (auto& item : items_) { if (item.loud) pub_.publish(msg); }"
+BRANCHES = "if (msg.data.empty()) { pub_.publish(msg); } else { pub_.publish(last_); }"
+
+CPP_CASES = [
+    # A condition that moved into an object, a getter, or out of it.
+    ("a getter", say("if (state_.ready()) pub_.publish(msg);"), say("if (state_.ready_) pub_.publish(msg);"), []),
+    (
+        "a getter of another object is another condition",
+        "State more_state_;\n" + say("if (state_.ready()) pub_.publish(msg);"),
+        "State more_state_;\n" + say("if (more_state_.ready()) pub_.publish(msg);"),
+        [("changed", "`more_state_.ready()` was `state_.ready()`")],
+    ),
+    (
+        "a member of an inner object",
+        say("if (state_.ready_) pub_.publish(msg);"),
+        say("if (state_.sight_.ready_) pub_.publish(msg);"),
+        [],
+    ),
+    (
+        "members become those of an object",
+        "bool heard_;\n" + say("heard_ = true; if (heard_) pub_.publish(msg);"),
+        "Sight sight_;\n" + say("sight_.heard_ = true; if (sight_.heard_) pub_.publish(msg);"),
+        [],
+    ),
+    (
+        "what a message says is asked instead",
+        "bool valid_;\n" + say("valid_ = true; if (valid_) pub_.publish(msg);"),
+        "bool valid_;\n" + say("valid_ = true; if (msg.valid_) pub_.publish(msg);"),
+        [("changed", "`msg.valid_` was `valid_`")],
+    ),
+    # Loops through the same container.
+    (
+        "an index for a loop through a container",
+        say(LOOP),
+        say("for (size_t i = 0; i < items_.size(); ++i) { if (items_[i].loud) pub_.publish(msg); }"),
+        [],
+    ),
+    (
+        "an iterator",
+        say("for (auto it = items_.begin(); it != items_.end(); it++) { if (it->loud) pub_.publish(msg); }"),
+        say(LOOP),
+        [],
+    ),
+    (
+        "a loop through another one",
+        say(LOOP),
+        say("for (size_t i = 0; i < others_.size(); ++i) { if (others_[i].loud) pub_.publish(msg); }"),
+        [("changed", "")],
+    ),
+    (
+        "another element of it",
+        say("for (size_t i = 0; i < items_.size(); ++i) { if (items_[i].loud) pub_.publish(msg); }"),
+        say("for (size_t i = 0; i < items_.size(); ++i) { if (items_[0].loud) pub_.publish(msg); }"),
+        [("changed", "`items_[0].loud` was `items_[i].loud`")],
+    ),
+    (
+        "whether there is anything is asked by the loop itself",
+        say("if (items_.empty()) return; for (auto& item : items_) { pub_.publish(item); }"),
+        say("for (auto& item : items_) { pub_.publish(item); }"),
+        [],
+    ),
+    (
+        "a loop that comes sends more and fewer",
+        say("pub_.publish(msg);"),
+        say("for (auto& item : items_) { pub_.publish(item); }"),
+        [("changed", "only inside `for (auto& item : items_)`")],
+    ),
+    (
+        "a loop that goes",
+        say("bool done = false; while (!done) { pub_.publish(msg); done = true; }"),
+        say("bool done = false; if (true) { pub_.publish(msg); done = true; }"),
+        [("changed", "no longer asks for `!done`")],
+    ),
+    # Statements that become one, and one that becomes several.
+    ("one statement behind both branches", say(BRANCHES), say("pub_.publish(msg.data.empty() ? msg : last_);"), []),
+    ("one statement in each branch", say("pub_.publish(msg);"), say(BRANCHES), []),
+    (
+        "a helper for both branches",
+        say(BRANCHES),
+        "void send(const std_msgs::String& m) { pub_.publish(m); }\n"
+        + say("if (msg.data.empty()) { send(msg); } else { send(last_); }"),
+        [],
+    ),
+    (
+        "one of two that were sent",
+        say("pub_.publish(msg); pub_.publish(msg);"),
+        say("pub_.publish(msg);"),
+        [("gone", "was published on messages of `in`")],
+    ),
+    (
+        "one branch alone",
+        say(BRANCHES),
+        say("if (msg.data.empty()) { pub_.publish(msg); }"),
+        [("gone", "was published on messages of `in`")],
+    ),
+    (
+        "a function of the same name with other arguments is called",
+        "void send() {}\n  void send(int level) { if (able_) pub_.publish(last_); }\n" + say("if (loud_) send(1);"),
+        "void send() {}\n  void send(int level) { if (able_) pub_.publish(last_); }\n"
+        + say("send(); if (loud_) send(1);"),
+        [],
+    ),
+    # A part of a function that calls itself through others.
+    (
+        "a helper on a way that goes round",
+        "void plan() { pub_.publish(last_); if (far_) { if (long_) go(); } }\n  void go() { plan(); }\n"
+        + say("plan();"),
+        "void plan() { pub_.publish(last_); if (far_) halve(); }\n  void halve() { if (long_) go(); }\n"
+        "  void go() { plan(); }\n" + say("plan();"),
+        [],
+    ),
+    # Who calls a function is known on one side alone.
+    (
+        "a call of what something unseen may call",
+        "void send() { if (able_) pub_.publish(last_); }\n" + say("last_ = msg;"),
+        "void send() { if (able_) pub_.publish(last_); }\n" + say("if (loud_) send();"),
+        [],
+    ),
+    (
+        "no longer a call of it",
+        "void send() { if (able_) pub_.publish(last_); }\n" + say("if (loud_) send();"),
+        "void send() { if (able_) pub_.publish(last_); }\n" + say("last_ = msg;"),
+        [],
+    ),
+    (
+        "what it asks itself",
+        "void send() { pub_.publish(last_); }\n" + say("last_ = msg;"),
+        "void send() { if (able_) pub_.publish(last_); }\n" + say("if (loud_) send();"),
+        [("tightened", "only when `able_`")],
+    ),
+    (
+        "an unseen caller is left out, and another one comes",
+        "void start() { send(); }\n  void send() { pub_.publish(last_); }\n" + say("last_ = msg;"),
+        "void start() { last_.clear(); }\n  void send() { pub_.publish(last_); }\n" + say("if (loud_) send();"),
+        [],
+    ),
+    (
+        "something unseen instead of messages",
+        "void send() { pub_.publish(last_); }\n" + say("if (loud_) send();"),
+        "void send() { pub_.publish(last_); }\n  void onOther() { if (loud_ && able_) send(); }\n"
+        + say("last_ = msg;"),
+        [("changed", "only when `able_` too")],
+    ),
+    (
+        "a call more where all are known",
+        "void send() { pub_.publish(last_); }\n" + say("if (loud_) send();"),
+        "void send() { pub_.publish(last_); }\n" + say("if (loud_ || quiet_) send();"),
+        [("widened", "`loud_ || quiet_` was `loud_`")],
+    ),
+    (
+        "a thread instead of messages",
+        "void send() { pub_.publish(last_); }\n" + say("send();"),
+        "void send() { pub_.publish(last_); }\n  void run() { while (ros::ok()) { if (fresh_) send(); } }\n"
+        + say("fresh_ = true;"),
+        [("trigger changed", "on loop, was on messages of `in`; only when `fresh_`")],
+    ),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "said"), [case[1:] for case in CPP_CASES], ids=[case[0] for case in CPP_CASES])
+def test_what_is_said_of_cpp(old: str, new: str, said: list[tuple[str, str]]) -> None:
+    found = compare_cpp(old, new)
+    assert [kind for kind, _ in found] == [kind for kind, _ in said], found
+    for (_, why), (_, wanted) in zip(found, said, strict=True):
+        assert wanted in why
+
+
+EACH = "        for item in self.items:\n            if item.loud:\n                self.pub.publish(msg)"
+NUMBERED = EACH.replace("for item in self.items", "for i, item in enumerate(self.items)")
+
+PYTHON_CASES = [
+    (
+        "whether there is anything is asked by the loop itself",
+        "        if not self.items:\n            return\n" + EACH,
+        EACH,
+        [],
+    ),
+    (
+        "places in a list",
+        EACH,
+        "        for i in range(len(self.items)):\n            if self.items[i].loud:\n"
+        "                self.pub.publish(msg)",
+        [],
+    ),
+    (
+        "places with what is there",
+        EACH,
+        NUMBERED,
+        [],
+    ),
+    (
+        "not the first of them",
+        NUMBERED,
+        NUMBERED.replace("item.loud", "i > 0"),
+        [("changed", "`i > 0` was `item.loud`")],
+    ),
+    (
+        "members become those of an object",
+        "        self.heard = True\n        if self.heard:\n            self.pub.publish(msg)",
+        "        self.sight.heard = True\n        if self.sight.heard:\n            self.pub.publish(msg)",
+        [],
+    ),
+    (
+        "a constructor's part becomes a method",
+        "        pass\n\nclass Sender:\n    def __init__(self, pub):\n        if loaded:\n            pub.publish(1)",
+        "        sender = Sender()\n        if msg.data:\n            sender.begin(self.pub)\n\nclass Sender:\n"
+        "    def begin(self, pub):\n        if loaded:\n            pub.publish(1)",
+        [],
+    ),
+]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"), [case[1:] for case in PYTHON_CASES], ids=[case[0] for case in PYTHON_CASES]
+)
+def test_what_is_said_of_python(old: str, new: str, said: list[tuple[str, str]]) -> None:
+    found = compare_python(old, new)
+    assert [kind for kind, _ in found] == [kind for kind, _ in said], found
+    for (_, why), (_, wanted) in zip(found, said, strict=True):
+        assert wanted in why
+
+
+RUN = """
+import rospy
+from std_msgs.msg import String
+from wrapper import make_timer, ros_ok
+
+pub = rospy.Publisher("out", String, queue_size=1)
+
+def step():
+    if ready:
+        pub.publish("a")
+
+def main():
+    rospy.init_node("talker")
+BODY
+
+main()
+"""
+AT_TEN = "    rate = rospy.Rate(10)\n    while not rospy.is_shutdown():\n        step()\n        rate.sleep()"
+NAMED = AT_TEN.replace("Rate(10)", "Rate(pace)").replace("not rospy.is_shutdown()", "ros_ok()")
+LOOP_CASES = [
+    (
+        "a wrapper that asks whether the node is up, and a rate with a name",
+        AT_TEN,
+        "    pace = 10\n" + NAMED,
+        [],
+    ),
+    (
+        "another rate with a name",
+        AT_TEN,
+        "    pace = 20\n" + NAMED,
+        [("trigger changed", "loop `rate 20`, was `rate 10`")],
+    ),
+    (
+        "whether the node is up is asked once, and no loop",
+        "    if ros_ok():\n        step()\n    rospy.spin()",
+        "    step()\n    rospy.spin()",
+        [("widened", "no longer asks for `ros_ok()`")],
+    ),
+    (
+        "a pause in one branch beside the rate",
+        AT_TEN,
+        AT_TEN.replace("        step()", "        if old:\n            rospy.sleep(0.002)\n        step()"),
+        [],
+    ),
+    (
+        "a pause that every round meets",
+        AT_TEN,
+        AT_TEN.replace("rate.sleep()", "rospy.sleep(0.5)"),
+        [("trigger changed", "loop `every 0.5`, was `rate 10`")],
+    ),
+    (
+        "what a lambda is handed to calls it when it wants",
+        AT_TEN,
+        "    make_timer(0.1, lambda: step())\n    rospy.spin()",
+        [],
+    ),
+    (
+        "a loop that calls it and one that does not ask",
+        "    step()\n    rospy.spin()",
+        "    while ros_ok():\n        step()",
+        [("trigger changed", "on loop, was on the start")],
+    ),
+]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"), [case[1:] for case in LOOP_CASES], ids=[case[0] for case in LOOP_CASES]
+)
+def test_what_is_said_of_loops(old: str, new: str, said: list[tuple[str, str]]) -> None:
+    found = compare({"run.py": RUN.replace("BODY", old)}, {"run.py": RUN.replace("BODY", new)})
+    assert [kind for kind, _ in found] == [kind for kind, _ in said], found
+    for (_, why), (_, wanted) in zip(found, said, strict=True):
+        assert wanted in why
+
+
+SENDING = "        if msg.data:\n            self.pub.publish(msg)"
+
+
+def test_a_file_that_cannot_be_read_any_more_loses_nothing() -> None:
+    files = {"talker.py": PYTHON.replace("BODY", SENDING), "same.py": "A = 1\n"}
+    broken = {
+        **files,
+        "talker.py": files["talker.py"].replace("        self.last = msg\n", "          self.last = msg\n"),
+    }
+    assert compare(files, broken) == []
+    assert compare(broken, files) == []
+    assert [kind for kind, _ in compare(files, {"same.py": "A = 1\n"})] == ["gone"]
+
+
+def test_a_package_that_is_not_built_any_more_is_named() -> None:
+    files = {"talker.py": PYTHON.replace("BODY", SENDING)}
+    assert compare(files, {}) == [("gone", "was published on messages of `in`; no package `talk` is built any more")]
+    assert compare({}, files) == [("new", "is published on messages of `in`; there was no package `talk`")]
+
+
+SERIAL = """
+class Serial:
+    def __init__(self, delegate):
+        self.delegate = delegate
+
+    def read(self):
+        if self.ready:
+            self.delegate.publish(ARGUMENTS)
+"""
+DELEGATE = """
+class Delegate:
+    def publish(self, command, data):
+        pass
+"""
+
+
+def test_a_method_of_the_codes_own_is_no_publisher() -> None:
+    twice = {"serial.py": SERIAL.replace("ARGUMENTS", "cmd, data"), "delegate.py": DELEGATE}
+    assert compare(twice, {}) == []
+    alone = {"serial.py": SERIAL.replace("ARGUMENTS", "msg"), "delegate.py": DELEGATE}
+    assert [kind for kind, _ in compare(alone, {})] == ["gone"]
