@@ -310,9 +310,9 @@ PYTHON = {
                                     "def pick(status):\n    return status\n", "level", ""),
     "given back from what is kept": ("self.last = msg", "def get(self, other):\n    x = other or self.last\n"
                                      "    return x\ndef see(self):\n    return self.get(3).level", "", "level", ""),
-    "given back by what is around": ("def get():\n    found = None\n    def see(status):\n        nonlocal found\n"
-                                     "        found = status\n    self.call(see)\n    see(msg)\n    return found\n"
-                                     "x = get().level", "", "", "level", ""),
+    "given back by what is around": ("self.last = msg", "def get(self, n):\n    found = None\n    def see():\n"
+                                     "        nonlocal found\n        found = self.last\n    see()\n"
+                                     "    return found\ndef tick(self):\n    return self.get(1).level", "", "level", ""),
     "given back by a function that is called": ("self.see(msg)", "def see(self, status):\n    self.keep(status)\n"
                                                 "def keep(self, status):\n    global kept\n    kept = status\n"
                                                 "def get(self, n):\n    return kept\n"
