@@ -42,8 +42,8 @@ class PathUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class FieldFunction(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A function's uses. name: of a lambda `lambda@line:column`, empty for others. line, end: as FlowFunction has
-    them; 0 for what stands outside of functions."""
+    """A function's uses. name: of a lambda `lambda@line:column`, of others the last part of it. line, end: as
+    FlowFunction has them; 0 for what stands outside of functions."""
 
     name: str
     line: int

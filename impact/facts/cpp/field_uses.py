@@ -154,10 +154,21 @@ class _Reader:
             name = f"lambda@{line}:{node.start_byte - self.starts[line - 1] + 1}"
             end = bisect_right(self.starts, max(0, node.end_byte - 1))
         else:
-            name, end = "", bisect_right(self.starts, node.end_byte)
+            name, end = self._find_name(node), bisect_right(self.starts, node.end_byte)
         if self.uses:
             self._functions.append(FieldFunction(name, line, end, tuple(self.uses)))
         self.uses = before
+
+    def _find_name(self, function: Node) -> str:
+        """The last part of a function's name; empty where it has none that is seen."""
+        at = function.child_by_field_name("declarator")
+        for _ in range(20):
+            if at is None or at.kind_id in NAMES:
+                break
+            at = at.child_by_field_name("declarator") or next(
+                (child for child in at.children if child.kind_id in DECLARATORS), None
+            )
+        return strip_template(self.spell(at)).rpartition("::")[2].strip() if at is not None else ""
 
     def _walk_parameters(self, node: Node) -> None:
         """Parameters of a function; in a body they may be arguments that the grammar took for types: `T x(a);`."""

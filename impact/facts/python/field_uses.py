@@ -91,11 +91,12 @@ class _Reader(SourceText):
             self._walk(decorator)
         before, own = self.uses, self.own
         self.uses = []
-        name = ""
         every = [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs]
         if isinstance(node, ast.Lambda):
             name = f"lambda@{node.lineno}:{self.find_column(node.lineno, node.col_offset)}"
-        elif isinstance(self.parents.get(node), ast.ClassDef) and every and not _is_static(node):
+        else:
+            name = node.name
+        if isinstance(self.parents.get(node), ast.ClassDef) and every and not _is_static(node):
             self.own = (*own, every[0].arg)
             every = every[1:]
         hidden = {one.arg for one in every}

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
+from ....edges.groups import group_pairs
 from ...facts.field_uses import FieldFile, FieldFunction, PathUse
 from ...facts.flow import FlowFunction
 from ..flow.code import FlowCode, Fn, Variable, get_tail
@@ -25,6 +26,19 @@ def split_path(path: str) -> tuple[str, ...]:
     return tuple(path.split("."))
 
 
+def _find_line(fn: Fn) -> int:
+    """Where a function begins; 0 for what stands outside of functions."""
+    return fn.facts.line if fn.facts.name else 0
+
+
+def _match(facts: FieldFunction, found: Sequence[Fn]) -> Fn | None:
+    """The function whose uses some facts are, of those that begin on its line: most often there is one."""
+    is_lambda = facts.name.startswith("lambda@")
+    same = [fn for fn in found if fn.is_lambda == is_lambda]
+    named = [fn for fn in same if fn.name.endswith(facts.name) and get_tail(fn.name) == facts.name]
+    return next(iter(named or (() if is_lambda else same)), None)
+
+
 class Uses:
     """All uses of a body of code. files: field facts by path, for all files of the code that could be read."""
 
@@ -37,22 +51,10 @@ class Uses:
             file = files.get(source.path)
             if file is None:
                 continue
-            known = self._match(source.path)
+            known = group_pairs((_find_line(fn), fn) for fn in self.code.functions_in.get(source.path, ()))
             for facts in file.functions:
-                fn = known.get((facts.line, facts.name)) or Fn(source, FlowFunction("", "", (), 0, 0))
+                fn = _match(facts, known.get(facts.line, ())) or Fn(source, FlowFunction("", "", (), 0, 0))
                 self._add(fn, facts)
-
-    def _match(self, path: str) -> dict[tuple[int, str], Fn]:
-        """The functions of a file by line, and the name of a lambda."""
-        found: dict[tuple[int, str], Fn] = {}
-        for fn in self.code.functions_in.get(path, ()):
-            if fn.is_lambda:
-                found[fn.facts.line, fn.name[fn.name.rfind("lambda@") :]] = fn
-            elif fn.facts.name:
-                found.setdefault((fn.facts.line, ""), fn)
-            else:
-                found.setdefault((0, ""), fn)
-        return found
 
     def _add(self, fn: Fn, facts: FieldFunction) -> None:
         path = fn.source.path

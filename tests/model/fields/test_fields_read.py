@@ -238,6 +238,9 @@ CPP = {
     "given back by what is around a lambda": ("x_ = get(*msg).level;", "int x_;",
                                               "robot::Status get(const robot::Status& s) { robot::Status found;"
                                               " auto f = [&]() { found = s; }; f(); return found; }", "", "level", ""),
+    "functions of one line": ("put(*msg);", "robot::Status last_; void put(const robot::Status& s) { last_ = s; }"
+                              " const robot::Status& fetch() { return last_; } int f() { return fetch().level; }",
+                              "", "", "level", ""),
     "set by a lambda": ("robot::Status found; auto f = [&]() { found = *msg; }; f(); x_ = found.level;", "int x_;", "",
                         "", "level", ""),
     "returned through": ("int x = pass(msg)->level;", "",
