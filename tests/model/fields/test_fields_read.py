@@ -210,7 +210,8 @@ CPP = {
                                 "template <class T> struct Box { T t; };",
                                 "template class Box<int>; extern template struct Box<char>;", "level", ""),
     "an algorithm": ("std::for_each(msg->points.begin(), msg->points.end(),"
-                     " [&](const geometry_msgs::Point& p) { sum_ += p.x; });", "double sum_;", "", "", "points[].x", ""),
+                     " [&](const geometry_msgs::Point& p) { sum_ += p.x; });", "double sum_;", "", "",
+                     "points[].x", ""),
     "an algorithm that finds": ("auto it = std::find_if(msg->points.begin(), msg->points.end(),"
                                 " [](const auto& p) { return p.x > 0; }); x_ = it->z;", "double x_;", "", "",
                                 "points[].x points[].z", ""),
