@@ -5,6 +5,7 @@ is a JSON array: topic, node, bytes of the message on the wire, the message as a
 arrival. Times within the run are written as "now".
 """
 
+import importlib
 import json
 import sys
 import time
@@ -28,9 +29,7 @@ def convert(value, start):
 
 def main():
     """Records until it is stopped. Argument: the file to write."""
-    import roslib.message  # pyright: ignore[reportMissingImports]
-    import rospy  # pyright: ignore[reportMissingImports]
-
+    rospy, messages = importlib.import_module("rospy"), importlib.import_module("roslib.message")
     start = time.time()
     known = set()
     with open(sys.argv[1], "w") as out:
@@ -38,7 +37,7 @@ def main():
 
         def record(message, topic):
             header = message._connection_header
-            cls = roslib.message.get_message_class(header["type"])
+            cls = messages.get_message_class(header["type"])
             if cls is None:
                 row = [topic, header["callerid"], len(message._buff), None, time.time()]
             else:

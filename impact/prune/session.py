@@ -13,7 +13,7 @@ import msgspec
 
 from ...edges.console import UserError, escape
 from ...edges.documents import DocumentError, load_json
-from ...edges.files import write_file
+from ...edges.files import read_file, write_file
 from ..analysis.fields import KnownMessages, close
 from ..analysis.fix import make_unified_diff
 from ..analysis.session import load_settings, open_tree
@@ -27,6 +27,7 @@ from .planner import Planner, PrunePlan
 JOURNAL = ".rosimpact-prune"
 """The folder in a workspace that keeps what --undo brings back."""
 _RECORD = "record.json"
+_MOST_BYTES = 100_000_000
 
 
 class Prepared(NamedTuple):
@@ -106,16 +107,16 @@ def apply_plan(root: Path, prepared: Prepared) -> None:
     rows: list[_Change] = []
     for number, (path, data) in enumerate(prepared.plan.changed.items()):
         saved = f"{number}.bytes"
-        (journal / saved).write_bytes(prepared.originals[path])
+        write_file(journal / saved, prepared.originals[path])
         rows.append(_Change(path, _digest(data), saved))
     rows += [_Change(path, _digest(data)) for path, data in prepared.plan.created.items()]
-    (journal / _RECORD).write_bytes(msgspec.json.encode(rows))
+    write_file(journal / _RECORD, msgspec.json.encode(rows))
     try:
         for path, data in prepared.plan.created.items():
             (root / path).parent.mkdir(parents=True, exist_ok=True)
-            write_file(os.fspath(root / path), data)
+            write_file(root / path, data)
         for path, data in prepared.plan.changed.items():
-            write_file(os.path.join(root, path), data, beneath=root, instead_of=prepared.originals[path])
+            write_file(root / path, data, beneath=root, instead_of=prepared.originals[path])
     except OSError as error:
         _restore(root, rows, force=True)
         why = f"{error.filename or root}: cannot be written: {error.strerror or error}; nothing is changed"
@@ -127,7 +128,7 @@ def undo(root: Path) -> list[str]:
     then nothing is done. Raises UserError."""
     journal = root / JOURNAL
     try:
-        data = (journal / _RECORD).read_bytes()
+        data = read_file(journal / _RECORD, _MOST_BYTES)
     except OSError:
         raise UserError(f"{root}: nothing was pruned here, or {JOURNAL} is gone; use your version control") from None
     try:
@@ -139,7 +140,7 @@ def undo(root: Path) -> list[str]:
         if ".." in Path(row.path).parts or Path(row.path).is_absolute() or "/" in row.saved:
             raise UserError(f"{journal / _RECORD}: names a file outside of the workspace; use your version control")
         at = root / row.path
-        if not at.is_file() or _digest(at.read_bytes()) != row.digest:
+        if not at.is_file() or _digest(read_file(at, _MOST_BYTES)) != row.digest:
             raise UserError(f"{at}: was changed since; take that back first, or use your version control")
     _restore(root, rows, force=False)
     return [row.path for row in rows]
@@ -149,7 +150,7 @@ def _restore(root: Path, rows: Sequence[_Change], force: bool) -> None:
     for row in rows:
         at = root / row.path
         if row.saved:
-            write_file(os.fspath(at), (root / JOURNAL / row.saved).read_bytes())
+            write_file(at, read_file(root / JOURNAL / row.saved, _MOST_BYTES))
         elif at.exists():
             at.unlink()
             if not any(at.parent.iterdir()):
@@ -169,7 +170,7 @@ def write_copy(root: Path, target: Path, prepared: Prepared) -> None:
         shutil.copytree(root, target, symlinks=True, ignore=skipped, dirs_exist_ok=True)
         for path, data in {**prepared.plan.changed, **prepared.plan.created}.items():
             (target / path).parent.mkdir(parents=True, exist_ok=True)
-            write_file(os.fspath(target / path), data)
+            write_file(target / path, data)
     except (OSError, shutil.Error) as error:
         raise UserError(f"--out {target}: cannot be written: {error}") from None
 

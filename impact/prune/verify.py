@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 from ...edges.console import UserError
 from ...edges.documents import DocumentError, load_json
+from ...edges.files import read_text
 from .planner import PrunePlan, TopicPlan
 from .session import Prepared, write_copy
 
@@ -26,6 +27,7 @@ _TOPLEVEL = ("/opt/ros/noetic/share", "/opt/ros/melodic/share", "/usr/share")
 _NEEDS = "catkin, cmake and a compiler; on Debian: apt install catkin libroscpp-dev ros-message-generation"
 _ERROR = re.compile(r"\berror\b|\bError\b|No rule|not found", re.ASCII)
 _BUILD_SECONDS = 1_800
+_MOST_BYTES = 1_000_000_000
 Say = Callable[[str], None]
 
 
@@ -128,7 +130,7 @@ def build(root: Path, folder: Path, prepared: Prepared, toplevel: Path) -> str:
     write_copy(root, source / "workspace", prepared)
     shutil.copy(toplevel, source / "CMakeLists.txt")
     inner = source / "workspace" / "src" / "CMakeLists.txt"
-    if inner.is_file() and (inner.is_symlink() or "toplevel" in inner.read_text(errors="replace")):
+    if inner.is_symlink() or (inner.is_file() and "toplevel" in read_text(inner, _MOST_BYTES, "replace")):
         inner.unlink()
     environment = make_environment(folder)
     python = "/usr/bin/python3" if os.path.exists("/usr/bin/python3") else sys.executable
@@ -259,7 +261,7 @@ def _stop(process: subprocess.Popen[bytes]) -> None:
 
 def _read_recorded(path: Path) -> dict[tuple[str, str], list[_Message]]:
     found: dict[tuple[str, str], list[_Message]] = {}
-    lines = path.read_text().splitlines() if path.is_file() else []
+    lines = read_text(path, _MOST_BYTES).splitlines() if path.is_file() else []
     for line in lines:
         with contextlib.suppress(DocumentError, ValueError, TypeError):
             topic, node, size, fields, _ = load_json(line)

@@ -17,6 +17,8 @@ DOORS = {
         "corpus/report.py": "a descriptor of open_regular()",
         "corpus/sources/ros_answers.py": "a descriptor of open_regular()",
         **dict.fromkeys(("impact/measure/children.py", "impact/measure/nodes/node_loop.py"), _MEASURED),
+        "impact/prune/recorder.py": "what a run did; it runs without rosimpact",
+        "impact/prune/verify.py": "what the nodes of a run print",
     },
     "os.open": {
         "edges/files.py": "the door",
@@ -56,8 +58,12 @@ DOORS = {
     "subprocess.run": {
         "impact/targets/capture.py": "dpkg-query and the like, without words of a workspace",
         "impact/measure/children.py": "ip, tc, cmake and ROS's generators, which get fields and types alone",
+        "impact/prune/verify.py": "the build of the workspace that the user asked for",
     },
-    "subprocess.Popen": {"impact/measure/children.py": "measuring nodes and their master"},
+    "subprocess.Popen": {
+        "impact/measure/children.py": "measuring nodes and their master",
+        "impact/prune/verify.py": "the nodes of the workspace that the user asked for, and their master",
+    },
     "pickle.loads": {"edges/processes.py": "what our own processes send each other"},
     "marshal.loads": {"classifier/features.py": "a nameless temporary file of one process"},
     "yaml.load": dict.fromkeys(("impact/targets/providers/providers.py", "impact/targets/snapshot.py"), _SHIPPED),
