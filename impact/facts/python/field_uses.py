@@ -96,9 +96,9 @@ class _Reader(SourceText):
             name = f"lambda@{node.lineno}:{self.find_column(node.lineno, node.col_offset)}"
         else:
             name = node.name
-        if isinstance(self.parents.get(node), ast.ClassDef) and every and not _is_static(node):
-            self.own = (*own, every[0].arg)
-            every = every[1:]
+            if isinstance(self.parents.get(node), ast.ClassDef) and every and not _is_static(node):
+                self.own = (*own, every[0].arg)
+                every = every[1:]
         hidden = {one.arg for one in every}
         self.own = tuple(one for one in self.own if one not in hidden)
         for part in [node.body] if isinstance(node, ast.Lambda) else node.body:
