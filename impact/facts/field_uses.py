@@ -24,7 +24,7 @@ class PathUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     | write | it is assigned | the operator | | |
     | change | a method changes what it holds | the method | | |
     | kept | a variable, or an element of one, becomes it | the path of that one | count 1: it is `given` to make it too
-      | the type declared for it; `?` for none, `lambda@line:column` of the lambda that captures it so, or is called with it |
+      | the type declared for it; `?` for none, `lambda@line:column` of the lambda that captures or takes it |
     | added | it is an argument of a method that adds to a container, if it is one | callee | as for `given` | |
     | given | it is an argument | the callee | which of how many; -1 by a keyword, named in `type` | of what is made |
     | method | a method is called on it | the method | | |
