@@ -66,6 +66,8 @@ def find_undeclared(view: TargetView, package: Package) -> Undeclared:
         system = need.providers[0].kind == "system"
         if system and environment and need.how == "import":
             continue
+        if need.how == "include" and view.unknown_contents.may_install_folder(package, need.subject):
+            continue
         carried = system and need.how != "import"
         if not (carried and view.unknown_contents.is_likely(package, need.subject)):
             kind = found.borrowed if view.is_met(need.providers, closure) else found.missing
