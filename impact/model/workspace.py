@@ -854,7 +854,7 @@ class _Linker:
         a generator has run; each as the outermost path that is ignored. files: of the package. read: as above."""
         if not self._ignoring:
             return set()
-        folders = group_pairs((posixpath.basename(one), posixpath.dirname(one)) for one in map(posixpath.dirname, files))
+        folders = group_pairs((name, above) for above, name in map(posixpath.split, map(posixpath.dirname, files)))
         found: set[str] = set()
         asked: set[str] = set()
         for path in files:
