@@ -103,6 +103,7 @@ _ASIDE_NAME = re.compile(r"(?:^|[_-])(?:example|demo|tutorial|sample)s?(?:[_-]|\
 _TEST_NAME = re.compile(r"(?:test_.*|.*_test|conftest)\.\w+$|(?:.*[_-])?test\.launch(?:\.\w+)?$")
 
 
+_STD_NAME = re.compile(r"std::(\w+)")
 # So many of the sources that compile a header are looked at.
 _SOURCES = 6
 
@@ -1105,9 +1106,27 @@ class PackageJoin:
         for path, (role, public, targets, conditions) in roles.items():
             found = self.searched.get(path)
             for use in found.uses if found is not None else ():
+                if use.label.startswith("std::") and self._brings_into_std(path, use.label):
+                    continue
                 yield NameUse(use.label, At(path, use.line, use.column), role, public, "cpp",
                               conditions + self.macros.resolve_conditions(use.conditions, targets), targets,
                               f"<{use.types}>".join(_OPEN_TYPES.split(use.label)))  # fmt: skip
+
+    def _brings_into_std(self, path: str, label: str) -> bool:
+        """Whether a file, or a header of the package that it reaches, adds a namespace of the package to `std` in which
+        the name that stands first in a label may be."""
+        named = _STD_NAME.match(label)
+        if named is None:
+            return False
+        added = {
+            space.removeprefix("::")
+            for at in self.list_reached(path)
+            if at in self.cpp and "std" in self.cpp[at].namespaces
+            for space in self.cpp[at].opened
+        }
+        return bool(added) and any(
+            not added.isdisjoint(facts.namespaces) and named[1] in facts.type_names for facts in self.cpp.values()
+        )
 
     def find_named(self, texts: Iterable[str]) -> tuple[str, ...]:
         """The declared dependencies that stand among the words of files."""
