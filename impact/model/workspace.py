@@ -850,8 +850,8 @@ class _Linker:
                     yield path
 
     def list_ignored_modules(self, files: list[str], read: dict[str, str]) -> set[str]:
-        """Modules that Python files of a package import, that are not there, and that git ignores, so that they are once
-        a generator has run; each as the outermost path that is ignored. files: of the package. read: as above."""
+        """Modules that Python files of a package import, that are not there, and that git ignores, so that a generator
+        makes them; each as the outermost path that is ignored. files: of the package. read: as above."""
         if not self._ignoring:
             return set()
         folders = group_pairs((name, above) for above, name in map(posixpath.split, map(posixpath.dirname, files)))

@@ -81,7 +81,7 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
     quiet = "QUIET" in flags
     conditions = run.merge_with(name)
     add_module(run, f"Find{name}")
-    of_catkin = name == "catkin" or (bool(components) and _wraps_catkin(run, str(name)))
+    of_catkin = name == "catkin" or (bool(components) and _is_wrapper_of_catkin(run, str(name)))
     if of_catkin:
         run.add_found(FoundPackage(name="catkin", how="find_package", at=run.locate(name.at), required=required,
                             quiet=quiet,
@@ -125,7 +125,7 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
         _set_catkin_variables(run, call)
 
 
-def _wraps_catkin(run: Interpreter, name: str) -> bool:
+def _is_wrapper_of_catkin(run: Interpreter, name: str) -> bool:
     """Whether a configuration or find module of the tree answers that finds catkin itself: the components that it is
     given are then packages of catkin."""
     places = ((f"{name}_DIR", f"{name}Config.cmake"), (f"{name}_DIR", f"{name.lower()}-config.cmake"))
@@ -134,12 +134,12 @@ def _wraps_catkin(run: Interpreter, name: str) -> bool:
         for directory in held.words if held is not None else ():
             path = run.make_relative(run.resolve(f"{directory}/{file}")) if directory else None
             facts = run.read(path) if path is not None else None
-            if facts is not None and any(_finds_catkin(command) for command in facts.commands):
+            if facts is not None and any(_is_search_for_catkin(command) for command in facts.commands):
                 return True
     return False
 
 
-def _finds_catkin(command: Command) -> bool:
+def _is_search_for_catkin(command: Command) -> bool:
     return command.name == "find_package" and [one.text for one in command.arguments[:1]] == ["catkin"]
 
 

@@ -68,7 +68,7 @@ class Override:
         """
         classes = [one for package, name in line for one in self._list_entities(package, name.rpartition("::")[0])]
         self.parameters = tuple(parameter.name for one in classes for parameter in one.template or ())
-        if any(_derives_from_parameter(one) for one in classes):
+        if any(_is_derived_from_parameter(one) for one in classes):
             return None  # whoever stands for it may have the method
         # Where others came beside a form that stayed, a later change took that form, maybe from a base class.
         found = min(self._iterate_lost_changes(line), key=lambda one: one[0], default=None)
@@ -265,7 +265,7 @@ class Override:
         return found
 
 
-def _derives_from_parameter(class_: Entity) -> bool:
+def _is_derived_from_parameter(class_: Entity) -> bool:
     """Whether a class template is derived from what it is given."""
     parameters = {parameter.name for parameter in class_.template or ()}
     return any(base.type.removesuffix("...").strip() in parameters for base in class_.bases)
