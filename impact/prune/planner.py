@@ -198,6 +198,18 @@ class Planner:
     def _list_dropped(self, group: Sequence[TopicFields]) -> list[str]:
         return [leaf for leaf in group[0].fields if all(leaf in topic.unread for topic in group)]
 
+    def _list_named(self, group: Sequence[TopicFields]) -> set[str]:
+        """Fields that are kept for the code that names them, or what they are a part of, without reading them."""
+        found: set[str] = set()
+        dropped = set(self._list_dropped(group))
+        for topic in group:
+            for endpoint in self._list_endpoints(topic, "subscriber"):
+                for path in self.topics.read(self.topics.list_callbacks(endpoint), endpoint, topic.type).named:
+                    below = [leaf for leaf in topic.fields if _split(leaf)[: len(path)] == path]
+                    if all(leaf in dropped and leaf not in found for leaf in below):
+                        found.update(sorted(below, key=lambda leaf: ("[]" in leaf, below.index(leaf)))[:1])
+        return found
+
     def _list_endpoints(self, topic: TopicFields, role: str) -> Iterator[Endpoint]:
         for one in self.topics.graph.endpoints:
             if one.topic == topic.topic and one.type == topic.type and one.role == role:
@@ -209,7 +221,8 @@ class Planner:
         """The lighter message of a group, with all that has to change. Raises EditRefused and LightenError."""
         type_ = group[0].type
         dropped = set(self._list_dropped(group))
-        leaves = [tuple(leaf.replace("[]", ".[]").split(".")) for leaf in group[0].fields if leaf not in dropped]
+        dropped -= self._list_named(group)
+        leaves = [_split(leaf) for leaf in group[0].fields if leaf not in dropped]
         fields = keep_fields(self.find_definition, type_, leaves)
         if fields is None:
             raise EditRefused(f"the definition of {type_} cannot be read")
@@ -344,6 +357,10 @@ class Planner:
             return compute_size(build_layout(find_section, type_, encoding), {}, encoding, self.length)
         except LayoutError:
             return 0
+
+
+def _split(leaf: str) -> Path:
+    return tuple(leaf.replace("[]", ".[]").split("."))
 
 
 def _is_below(leaf: str, path: str) -> bool:
