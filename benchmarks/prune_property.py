@@ -148,7 +148,8 @@ class CppWriter:
         """Puts the files into the case."""
         case = self.case
         includes = "".join(f"#include <{case.package}/{name}.h>\n" for name in case.messages)
-        start = f"#include <ros/ros.h>\n{includes}#include <boost/bind/bind.hpp>\n#include <iostream>\n#include <vector>\n\n"
+        standard = "#include <boost/bind/bind.hpp>\n#include <iostream>\n#include <vector>\n\n"
+        start = f"#include <ros/ros.h>\n{includes}{standard}"
         if self.using:
             start += f"using namespace {case.package};\n\n"
         bodies = [self.make_callback(topic, type_) for topic, type_ in case.topics for _ in range(self.pick((1, 1, 2)))]
@@ -161,10 +162,8 @@ class CppWriter:
             case.files["nodes/src/node.cpp"] = text
             case.nodes.append("nodes/src/node.cpp")
             return
-        main = "int main(int argc, char** argv) {\n  ros::init(argc, argv, \"hear\");\n  Hear hear;\n  ros::spin();\n" \
-            "  hear.finish();\n  static Hear* kept = new Hear(hear); (void)kept;\n  return 0;\n}\n"
-        main = main.replace("  Hear hear;", "  static Hear hear;").replace(
-            "  static Hear* kept = new Hear(hear); (void)kept;\n", "")
+        main = 'int main(int argc, char** argv) {\n  ros::init(argc, argv, "hear");\n' \
+            "  static Hear hear;\n  ros::spin();\n  hear.finish();\n  return 0;\n}\n"
         case.files["nodes/src/hear.cpp"] = hear + main
         case.files["nodes/src/talk.cpp"] = start + talk.replace("MAIN", "")
         case.nodes += ["nodes/src/hear.cpp", "nodes/src/talk.cpp"]
@@ -195,7 +194,8 @@ class CppWriter:
         elif form in ("helper", "template", "overload", "macro"):
             helper = self.case.name_new("help")
             inner = "\n".join(f"  {one}" for one in self.read("x.", type_))
-            kind = "template <class T> void {}(const T& x)" if form == "template" else f"inline void {{}}(const {spelt}& x)"
+            kind = f"inline void {{}}(const {spelt}& x)"
+            kind = "template <class T> void {}(const T& x)" if form == "template" else kind
             self.before.append(f"{kind.format(helper)} {{\n{inner}\n}}")
             if form == "overload":
                 self.before.append(f"inline void {helper}(int x) {{ std::cout << x; }}")
@@ -363,7 +363,8 @@ class CppWriter:
                 f"{spelt}::Ptr {name} = boost::make_shared<{spelt}>({make});\n    {pub}.publish(*{name});",
                 f"auto {name} = boost::make_shared<{spelt}>({make}); if (i != 5) {pub}.publish({name});",
                 f"if (i % 2) {pub}.publish({make}); else {pub}.publish({made[type_]}(i + 7));",
-                f"{spelt} {name};\n    {name} = {make};\n    if ({pub}.getNumSubscribers() > 0)\n      {pub}.publish( {name} );",
+                f"{spelt} {name};\n    {name} = {make};\n"
+                f"    if ({pub}.getNumSubscribers() > 0)\n      {pub}.publish( {name} );",
                 f"boost::shared_ptr<{spelt} const> {name}(new {spelt}({make})); {pub}.publish({name});",
             )))  # fmt: skip
         gap = self.pick(("\n    ", " "))
@@ -414,10 +415,11 @@ class PythonWriter:
         for topic, type_ in case.topics:
             for _ in range(self.pick((1, 1, 2))):
                 calls.append((topic, type_, *self._make_callback(topic, type_)))
-        hear = self._write_hearer(calls)
-        case.files["nodes/scripts/hear.py"] = self._write_imports() + hear
-        talk = self._write_talker()
-        case.files["nodes/scripts/talk.py"] = talk
+        end = self._write_hearer(calls)
+        imports = self._write_imports()
+        case.files["nodes/scripts/hear.py"] = imports + "\n\n".join(self.before) + end
+        self.before = []
+        case.files["nodes/scripts/talk.py"] = self._write_talker()
         case.nodes += ["nodes/scripts/hear.py", "nodes/scripts/talk.py"]
 
     def _write_imports(self) -> str:
@@ -530,27 +532,17 @@ class PythonWriter:
                 body = "\n".join(f"{tab}{tab}{one.replace('    ', tab)}" for one in lines)
                 methods.append(f"{tab}def {name}(self, m):\n{body}\n")
             given = self.pick(("{0!r}, §{1}, {2}", "{0!r}, §{1}, callback={2}, queue_size=3",
-                               "name={0!r}, data_class=§{1}, callback={2}", "{0!r}, data_class=§{1}, callback={2}"))  # fmt: skip
+                               "name={0!r}, data_class=§{1}, callback={2}",
+                               "{0!r}, data_class=§{1}, callback={2}"))  # fmt: skip
             call = given.format(topic, type_, name if free else f"self.{name}")
             subscribers.append(f"{tab}{tab}self.sub{number} = rospy.Subscriber({call})")
         self.before.insert(0, "def keep_as_is(function):\n    return function\n")
         self.before.append(
             f"class Hear:\n{tab}def __init__(self):\n" + "\n".join(subscribers) + "\n\n" + "\n".join(methods)
         )
-        ends = '\n\nrospy.init_node("hear")\nhear = Hear()\nrospy.spin()\n'
-        # The imports are drawn before this is put together.
-        self.tail = ends
-        text_before = self._write_late()
-        return text_before + ends
-
-    def _write_late(self) -> str:
-        self._late = "\n\n".join(self.before)
-        return "@@LATE@@"
+        return '\n\nrospy.init_node("hear")\nhear = Hear()\nrospy.spin()\n'
 
     def _write_talker(self) -> str:
-        hear = self.case.files["nodes/scripts/hear.py"]
-        self.case.files["nodes/scripts/hear.py"] = hear.replace("@@LATE@@", "\n\n".join(self.before))
-        self.before = []
         imports = self._write_imports()
         made: dict[str, str] = {}
         blocks: list[str] = []
@@ -574,7 +566,8 @@ class PythonWriter:
                 f"{pub}.publish(({make}))", f"if {pub}.get_num_connections():\n        {pub}.publish({make})",
                 f"{pub}.publish({make} if i % 2 else {made[type_]}(i + 3))",
             )))  # fmt: skip
-        gap = "; " if all("\n" not in one and not one.startswith("if") for one in sends) and self.chance(0.3) else "\n    "
+        short = all("\n" not in one and not one.startswith("if") for one in sends)
+        gap = "; " if short and self.chance(0.3) else "\n    "
         body = gap.join(sends)
         return (
             imports + "\n" + "\n\n".join(blocks) + '\n\nrospy.init_node("talk")\n' + "\n".join(setup)
@@ -644,7 +637,8 @@ class Builder:
             raise BuildError(done.stderr[:3000])
 
     def _make_command(self, source: Path, out: Path) -> list[str]:
-        return ["g++", *self.flags, f"-I{self.folder / 'pch'}", "-include", "ros/ros.h", "-c", str(source), "-o", str(out)]
+        header = [f"-I{self.folder / 'pch'}", "-include", "ros/ros.h"]
+        return ["g++", *self.flags, *header, "-c", str(source), "-o", str(out)]
 
     def run(self, root: Path, out: Path, case: Case) -> tuple[str, int]:
         """What the nodes of a workspace write, and how many bytes they send. Raises BuildError."""
@@ -661,7 +655,10 @@ class Builder:
             objects: list[str] = []
             for number, node in enumerate(nodes):
                 objects.append(str(out / f"node{number}.o"))
-                more = [f"-Dmain=run_node{number}", f"-I{cpp}", f"-I{root / 'nodes/include'}"]
+                # A macro of the command line would make the compiled header useless.
+                renamed = out / f"main{number}.h"
+                renamed.write_text(f"#define main run_node{number}\n")
+                more = ["-include", str(renamed), f"-I{cpp}", f"-I{root / 'nodes/include'}"]
                 self._check([*self._make_command(Path(node), Path(objects[-1])), *more])
             program = str(out / "program")
             libraries = [f"-l{one}" for one in LIBRARIES]

@@ -431,7 +431,6 @@ def test_files_keep_their_bytes_besides_the_change(name, tmp_path):
     for path, text in code.items():
         (tmp_path / path).write_bytes((mark + text.replace("\n", end)).encode())
     prepared = prepare(tmp_path)
-    (plan,) = prepared.plan.plans
     changed = {path: data.decode() for path, data in prepared.plan.changed.items()}
     talk, hear = changed["nodes/src/talk.cpp"], changed["nodes/src/hear.cpp"]
     assert talk.startswith(f"{mark}#include <ros/ros.h>{end}#include <msgs/State.h>{end}#include <msgs/StateLight.h>")
