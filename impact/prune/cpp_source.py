@@ -190,6 +190,11 @@ class CppEditor:
             raise EditRefused(f"its callback names the type otherwise: `{text}`")
         return text
 
+    def count_parameters(self, declarator: Node) -> int:
+        """How many parameters a declarator lists."""
+        rows = get_items(self._find_list(declarator))
+        return sum(one.type.endswith("parameter_declaration") for one in rows)
+
     def _find_list(self, function: Node) -> Node:
         for node in self._walk(function, KIND.parameter_list):
             return node

@@ -473,3 +473,47 @@ def test_names_are_kept_in_python(tmp_path):
     prepared = prepare(write(tmp_path, {**files, **PYTHON, "nodes/scripts/hear.py": "\ufeff" + hear}))
     assert [plan.keep for plan in prepared.plan.plans] == [("level", "at.x")]
     assert "import rospy" in prepared.plan.changed["nodes/scripts/hear.py"].decode("utf-8-sig").split("\n")
+
+
+def test_headers_that_are_included_together_define_a_function_once(tmp_path):
+    helper = """#pragma once
+#include <msgs/State.h>
+struct KIND {
+  void send() { msgs::State state; pub.publish(state); }
+  ros::NodeHandle nh;
+  ros::Publisher pub = nh.advertise<msgs::State>("state", 1);
+};
+"""
+    more = {f"nodes/include/nodes/{name}.h": helper.replace("KIND", name) for name in ("One", "Two")}
+    more["nodes/src/hear.cpp"] = HEAR.replace("BEFORE", '#include "nodes/One.h"\n#include "nodes/Two.h"').replace(
+        "PARAMETER", "const msgs::State& state").replace("BODY", "use(state.level);")  # fmt: skip
+    prepared = prepare(write(tmp_path, {**ROS1, **more, "nodes/src/talk.cpp": TALK.replace("PUBLISH", "")}))
+    assert len(prepared.plan.plans) == 1
+    for path in ("nodes/include/nodes/One.h", "nodes/include/nodes/Two.h"):
+        text = prepared.plan.changed[path].decode()
+        assert "#ifndef MSGS_FILL_STATE_LIGHT_DEFINED\n#define MSGS_FILL_STATE_LIGHT_DEFINED\n// Fills" in text
+        assert text.count("#endif") == 1
+
+
+def test_overloads_of_a_callback_keep_their_type(tmp_path):
+    before = "void onState(const msgs::State& state, int more);"
+    prepared = plan_ros1(tmp_path, "use(state.level);", "const msgs::State& state", before)
+    assert len(prepared.plan.plans) == 1
+    assert before in prepared.plan.changed["nodes/src/hear.cpp"].decode()
+
+
+def test_a_macro_that_publishes_is_no_publish_statement(tmp_path):
+    publish = "pub.publish(state); SEND(state);\n#define SEND(what) pub.publish(what)"
+    (refusal,) = plan_ros1(tmp_path, "use(state->level);", publish=publish).plan.refusals
+    assert refusal.reason == "a macro of nodes/src/talk.cpp names `pub`, which is not followed"
+
+
+def test_what_may_be_the_one_field_of_a_message_is_not_wrapped(tmp_path):
+    files = {name: text for name, text in ROS1.items() if name.startswith("msgs/") or name == "nodes/package.xml"}
+    files["msgs/msg/State.msg"] = "Point at\n"
+    talk = PYTHON["nodes/scripts/talk.py"].replace("pub.publish(state)", "pub.publish(Point(1, 2))")
+    hear = PYTHON["nodes/scripts/hear.py"].replace("sum(p.y for p in state.points)", "state.at.x")
+    talk = talk.replace("State(level=3)", "State()").replace("    state.points.append(Point(1, 2))\n", "")
+    files.update({**PYTHON, "nodes/scripts/talk.py": talk, "nodes/scripts/hear.py": hear})
+    (refusal,) = prepare(write(tmp_path, files)).plan.refusals
+    assert refusal.reason == "nodes/scripts/talk.py:9 may publish the one field that msgs/State has"
