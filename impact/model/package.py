@@ -41,6 +41,7 @@ from ..facts.words import mentions
 from ..targets.providers.message_headers import parse_type
 from ..targets.providers.standard import list_own_names
 from ..targets.surface.fields import Fields
+from ..tree.paths import is_vendored
 from .cmake.build import At, Build
 from .cpp.offered_headers import OfferedHeaders, collect_words
 from .macros import Macros
@@ -86,11 +87,23 @@ def _is_part(facts: PythonFile) -> bool:
     return any(item.level and not item.lazy for item in facts.imports)
 
 
+def _list_imported_beside(python: Mapping[str, PythonFile]) -> tuple[str, ...]:
+    """The files with an interpreter in their first line that another file of their folder imports by their name."""
+    modules = {
+        posixpath.join(posixpath.dirname(path), f"{item.module}.py")
+        for path, file in python.items()
+        for item in file.imports
+        if not item.level and item.module
+    }
+    return tuple(path for path, file in python.items() if file.interpreter and path in modules)
+
+
 _ASIDE_NAME = re.compile(r"(?:^|[_-])(?:example|demo|tutorial|sample)s?(?:[_-]|\.|\d|$)")
 # Modules and sources of tests, and launch files by which a node is tried out.
 _TEST_NAME = re.compile(r"(?:test_.*|.*_test|conftest)\.\w+$|(?:.*[_-])?test\.launch(?:\.\w+)?$")
 
 
+_STD_NAME = re.compile(r"std::(\w+)")
 # So many of the sources that compile a header are looked at.
 _SOURCES = 6
 
@@ -277,7 +290,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     scripts: Python files whose first line names an interpreter, and that import
     nothing relative to their package, which a program cannot. plain_scripts: those
     whose first line names `python`, of no version. at_home: Python files whose first line names a Python in the home
-    folder of a user, and that. shells: shell scripts without an ending. interpreted: names of
+    folder of a user, and that. imported_beside: the scripts that another
+    file of their folder imports by their bare name. shells: shell scripts without an ending. interpreted: names of
     Python files that CMake code gives to an interpreter. tree_nodes: what C++ files tell of nodes of behaviour trees,
     see facts/cpp/tree_nodes.py; trees, modelled: see ReferenceFile.
     """
@@ -319,6 +333,7 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     at_home: tuple[tuple[str, str], ...] = ()
     shells: tuple[str, ...] = ()
     interpreted: tuple[str, ...] = ()
+    imported_beside: tuple[str, ...] = ()
     source_targets: tuple[tuple[str, tuple[str, ...]], ...] = ()
     # Declared dependencies that words of launch files, YAML or robot descriptions name.
     named: tuple[str, ...] = ()
@@ -701,6 +716,7 @@ class PackageJoin:
             at_home=tuple((p, found[1]) for p, f in python.items() if (found := _PYTHON_AT_HOME.match(f.interpreter))),
             shells=tuple(shells),
             interpreted=tuple(sorted(interpreted)),
+            imported_beside=_list_imported_beside(python),
             named=self.find_named(data_words),
             defined=tuple(sorted(self.list_defined_names())),
             source_targets=tuple((p, r[2]) for p, r in roles.items() if r[2]),
@@ -1090,9 +1106,27 @@ class PackageJoin:
         for path, (role, public, targets, conditions) in roles.items():
             found = self.searched.get(path)
             for use in found.uses if found is not None else ():
+                if use.label.startswith("std::") and self._brings_into_std(path, use.label):
+                    continue
                 yield NameUse(use.label, At(path, use.line, use.column), role, public, "cpp",
                               conditions + self.macros.resolve_conditions(use.conditions, targets), targets,
                               f"<{use.types}>".join(_OPEN_TYPES.split(use.label)))  # fmt: skip
+
+    def _brings_into_std(self, path: str, label: str) -> bool:
+        """Whether a file, or a header of the package that it reaches, adds a namespace of the package to `std` in which
+        the name that stands first in a label may be."""
+        named = _STD_NAME.match(label)
+        if named is None:
+            return False
+        added = {
+            space.removeprefix("::")
+            for at in self.list_reached(path)
+            if at in self.cpp and "std" in self.cpp[at].namespaces
+            for space in self.cpp[at].opened
+        }
+        return bool(added) and any(
+            not added.isdisjoint(facts.namespaces) and named[1] in facts.type_names for facts in self.cpp.values()
+        )
 
     def find_named(self, texts: Iterable[str]) -> tuple[str, ...]:
         """The declared dependencies that stand among the words of files."""
@@ -1563,7 +1597,18 @@ class PackageJoin:
         role = self.find_role(path)
         if role == "test" and not self.is_run_as_test(path):
             return "aside"
+        if role is None and is_vendored(inside) and self._is_left_out(path):
+            return "aside"
         return role or ("run" if path in self.started or self.is_installed(path) else "aside")
+
+    def _is_left_out(self, path: str) -> bool:
+        """Whether a Python file is in no package of Python, and nothing starts it or is known to install it."""
+        if self.build_type == "ament_python" or path in self.started or posixpath.basename(path) in self.interpreted:
+            return False
+        if f"{posixpath.dirname(path)}/__init__.py" in self.files:
+            return False
+        items = (posixpath.normpath(item) if item else "" for rule in self.build.installs for item in rule.items)
+        return not any(not item or f"{path}/".startswith(f"{item}/") for item in items)
 
     def is_run_as_test(self, path: str) -> bool:
         """True for Python files of tests that the build runs, or may run: whatever lies in a folder of one, and modules

@@ -27,6 +27,8 @@ _WITH_INTERFACES = (
 # How CMake finds packages whose configurations find others in turn.
 FINDING = ("find_package", "catkin", "declared", "ament_lint_auto")
 _IN_BUILD = re.compile(r"\$\{(?:CMAKE|PROJECT)(?:_CURRENT)?_BINARY_DIR\}/")
+# What is stored of headers that are not known: the folder that is installed.
+_INSTALLED_FOLDER = re.compile(r"`[^`]*/(\w+)/?` is installed")
 # Folders that are not called after what they hold.
 _PLAIN_FOLDERS = frozenset(("include", "src", "lib"))
 
@@ -82,6 +84,19 @@ class UnknownContents:
         return self.is_made_apart(package, wanted) or any(
             _may_be_called_after(name, wanted) for name in self._list_of_unknown_contents(package)
         )
+
+    def may_install_folder(self, package: Package, header: str) -> bool:
+        """Whether a declared release installs a folder of headers that its build makes, called as that of a header."""
+        folder, within, _ = header.partition("/")
+        return bool(within) and folder in self._list_made_folders(package)
+
+    @cache_method
+    def _list_made_folders(self, package: Package) -> frozenset[str]:
+        view = self._view
+        names = (name for name in view.collect_declared(package) if name not in view.workspace.packages)
+        offers = (offer for name in names if (offer := view.offers.find_package(name)) is not None)
+        whys = (why for offer in offers for part, why in offer.build.unknown if part == "headers")
+        return frozenset(found[1] for why in whys if (found := _INSTALLED_FOLDER.match(why)))
 
     @cache_method
     def _list_of_unknown_contents(self, package: Package) -> list[str]:

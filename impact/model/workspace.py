@@ -812,7 +812,7 @@ class _Linker:
             and (f"{place.path}/CMakeLists.txt" if place.path else "CMakeLists.txt") in self.all_paths
             else Build()
         )
-        ignored = tuple(self.list_ignored(build, read))
+        ignored = (*self.list_ignored(build, read), *sorted(self.list_ignored_modules(files, read)))
         build = structs.replace(build, made=(*build.made, *ignored)) if ignored else build
         if before is not None and build == before.linked.build:
             return before.linked, {**read, **before.headers}
@@ -845,15 +845,51 @@ class _Linker:
                 path = posixpath.normpath(item)
                 if "$" in item or path.startswith(("/", "..")) or path in self.all_paths:
                     continue
-                folders, rules = ["", *itertools.accumulate(path.split("/")[:-1], "{}/{}".format)], []
-                for folder in folders:
-                    file = f"{folder}/.gitignore" if folder else ".gitignore"
-                    if self.extraction.kinds.get(file) == "gitignore":
-                        read[file] = self.extraction.ids.get(file, "")
-                        facts = self.extraction.get_facts(file)
-                        rules.append((folder, facts.facts.patterns if facts is not None else ()))
+                rules = self._list_ignore_rules(path, read)
                 if rules and (is_ignored(path, rules) or (install.kind == "directory" and holds_ignored(path, rules))):
                     yield path
+
+    def list_ignored_modules(self, files: list[str], read: dict[str, str]) -> set[str]:
+        """Modules that Python files of a package import, that are not there, and that git ignores, so that a generator
+        makes them; each as the outermost path that is ignored. files: of the package. read: as above."""
+        if not self._ignoring:
+            return set()
+        folders = group_pairs((name, above) for above, name in map(posixpath.split, map(posixpath.dirname, files)))
+        found: set[str] = set()
+        asked: set[str] = set()
+        for path in files:
+            facts = self.extraction.get_facts(path) if self.extraction.kinds.get(path) == "python" else None
+            for item in facts.facts.imports if facts is not None else ():
+                head, *rest = item.module.split(".")
+                around = path
+                for _ in range(item.level):
+                    around = posixpath.dirname(around)
+                roots = {around} if item.level else {*folders.get(head, ())} if rest else set()
+                asked.update(posixpath.join(root, *head.split(), *rest) for root in roots)
+        for path in asked:
+            if f"{path}.py" in self.all_paths or f"{path}/__init__.py" in self.all_paths:
+                continue
+            rules = self._list_ignore_rules(path, read)
+            above = itertools.accumulate(path.split("/"), "{}/{}".format)
+            ignored = next((one for one in above if rules and is_ignored(one, rules)), None)
+            if ignored is not None:
+                found.add(f"{ignored}.py")
+        return found
+
+    @cached_property
+    def _ignoring(self) -> bool:
+        return any(kind == "gitignore" for kind in self.extraction.kinds.values())
+
+    def _list_ignore_rules(self, path: str, read: dict[str, str]) -> list[tuple[str, tuple[str, ...]]]:
+        """The folders of the .gitignore files on the way to a path, outermost first, with their patterns."""
+        rules = []
+        for folder in ("", *itertools.accumulate(path.split("/")[:-1], "{}/{}".format)):
+            file = f"{folder}/.gitignore" if folder else ".gitignore"
+            if self.extraction.kinds.get(file) == "gitignore":
+                read[file] = self.extraction.ids.get(file, "")
+                facts = self.extraction.get_facts(file)
+                rules.append((folder, facts.facts.patterns if facts is not None else ()))
+        return rules
 
     def make_glob(self, files: list[str]):
         import fnmatch

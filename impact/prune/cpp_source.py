@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
+from codecs import BOM_UTF8
 from collections.abc import Iterator
 
 from tree_sitter import Node
@@ -31,13 +32,35 @@ def find_header(type_: str, ros: int) -> str:
     return f"{package}/{name}.h" if ros == 1 else f"{package}/msg/{_SNAKE.sub('_', name).lower()}.hpp"
 
 
+def list_offsets(data: bytes) -> list[int]:
+    """Where each character of a source begins in its bytes, and where the last one ends: without a byte order mark,
+    with a line break for one character, and one for what is not UTF-8, as sources are decoded to be parsed."""
+    at = len(BOM_UTF8) if data.startswith(BOM_UTF8) else 0
+    found: list[int] = []
+    while at < len(data):
+        try:
+            text, bad, behind = data[at:].decode(), 0, len(data)
+        except UnicodeDecodeError as error:
+            text, bad, behind = data[at : at + error.start].decode(), 1, at + error.end
+        for each in text:
+            if each != "\n" or not found or data[found[-1]] != 0x0D or found[-1] + 1 != at:
+                found.append(at)
+            at += len(each.encode())
+        found += [at] * bad
+        at = behind
+    return [*found, len(data)]
+
+
 class CppEditor:
     """The edits of one C++ file. data: its bytes."""
 
     def __init__(self, path: str, data: bytes, ros: int):
-        self.path, self.data, self.ros = path, data, ros
+        self.path, self.ros = path, ros
         source, self._root, _ = parse_source(data)
         self._starts = source.starts
+        # What is parsed has one byte for each character, and `\n` alone; offsets are of that until finish().
+        self._original = data
+        self.data = source.text.encode("ascii", "replace")
         self.edits: list[Edit] = []
         self._blocks: list[str] = []
 
@@ -167,6 +190,11 @@ class CppEditor:
             raise EditRefused(f"its callback names the type otherwise: `{text}`")
         return text
 
+    def count_parameters(self, declarator: Node) -> int:
+        """How many parameters a declarator lists."""
+        rows = get_items(self._find_list(declarator))
+        return sum(one.type.endswith("parameter_declaration") for one in rows)
+
     def _find_list(self, function: Node) -> Node:
         for node in self._walk(function, KIND.parameter_list):
             return node
@@ -248,7 +276,18 @@ class CppEditor:
             text = f"{text}\n" if blank is not None or not rows else f"\n{text}"
             at += blank.end() if blank is not None else 0
             self.replace(at, at, text if not at or self.data[at - 1 : at] == b"\n" else f"\n{text}")
-        return self.edits
+            self._blocks.clear()
+        return self._place_edits()
+
+    def _place_edits(self) -> list[Edit]:
+        """The edits by offsets of the file's own bytes, with its line breaks. Raises EditRefused."""
+        at = list_offsets(self._original)
+        if len(at) != len(self.data) + 1:
+            raise EditRefused(f"{self.path} has characters that are not read one by one")
+        ends = "\r\n" if b"\r\n" in self._original else "\n"
+        return [
+            Edit(one.path, at[one.start], at[one.end], one.text.replace("\n", ends)) for one in self.edits
+        ]
 
     def _is_inside(self, offset: int) -> bool:
         """Whether an offset lies in a conditional block other than a header's guard, a function or a class."""

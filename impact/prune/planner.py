@@ -25,7 +25,7 @@ from .cpp_source import CppEditor, EditRefused, find_header
 from .light import LightDefinition, LightenError, lighten
 from .package_files import list_messages, order_after, use_package, write_package
 from .python_source import PythonEditor
-from .shape import LightField, keep_fields, list_paths, name_nested
+from .shape import LightField, keep_fields, list_fields, list_paths, name_nested
 
 _PLAIN = frozenset(("roscpp", "rclcpp", "rospy", "rclpy", "rclcpp_lifecycle"))
 _ASKED = frozenset(
@@ -198,6 +198,18 @@ class Planner:
     def _list_dropped(self, group: Sequence[TopicFields]) -> list[str]:
         return [leaf for leaf in group[0].fields if all(leaf in topic.unread for topic in group)]
 
+    def _list_named(self, group: Sequence[TopicFields]) -> set[str]:
+        """Fields that are kept for the code that names them, or what they are a part of, without reading them."""
+        found: set[str] = set()
+        dropped = set(self._list_dropped(group))
+        for topic in group:
+            for endpoint in self._list_endpoints(topic, "subscriber"):
+                for path in self.topics.read(self.topics.list_callbacks(endpoint), endpoint, topic.type).named:
+                    below = [leaf for leaf in topic.fields if _split(leaf)[: len(path)] == path]
+                    if all(leaf in dropped and leaf not in found for leaf in below):
+                        found.update(sorted(below, key=lambda leaf: ("[]" in leaf, below.index(leaf)))[:1])
+        return found
+
     def _list_endpoints(self, topic: TopicFields, role: str) -> Iterator[Endpoint]:
         for one in self.topics.graph.endpoints:
             if one.topic == topic.topic and one.type == topic.type and one.role == role:
@@ -209,7 +221,8 @@ class Planner:
         """The lighter message of a group, with all that has to change. Raises EditRefused and LightenError."""
         type_ = group[0].type
         dropped = set(self._list_dropped(group))
-        leaves = [tuple(leaf.replace("[]", ".[]").split(".")) for leaf in group[0].fields if leaf not in dropped]
+        dropped -= self._list_named(group)
+        leaves = [_split(leaf) for leaf in group[0].fields if leaf not in dropped]
         fields = keep_fields(self.find_definition, type_, leaves)
         if fields is None:
             raise EditRefused(f"the definition of {type_} cannot be read")
@@ -346,6 +359,10 @@ class Planner:
             return 0
 
 
+def _split(leaf: str) -> Path:
+    return tuple(leaf.replace("[]", ".[]").split("."))
+
+
 def _is_below(leaf: str, path: str) -> bool:
     plain = leaf.replace("[]", "")
     return plain == path or plain.startswith(f"{path}.")
@@ -362,7 +379,10 @@ class _Work:
         self.names = {topic.topic for topic in group}
         self.ros = planner.workspace.ros
         self.editors: dict[str, CppEditor | PythonEditor] = {}
+        # The files in C++ whose publish statements are wrapped, by whether pointers are published; and those whose
+        # callbacks are given the full message.
         self.pointers: dict[str, bool] = {}
+        self.widened: list[str] = []
         self.partial = {path for path in _list_partial(fields, ())}
         stem = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", light.partition("/")[2]).lower()
         own = ", ".join(sorted(self.names))
@@ -381,11 +401,20 @@ class _Work:
                     done.add(fn)
                     self._retype_callback(fn)
         self._wrap_statements({site for site in sites if site.role == "publisher"})
-        for path, editor in self.editors.items():
-            if path in self.pointers and isinstance(editor, CppEditor):
-                editor.add_block(write_cpp(self.fill, self.ros, self.pointers[path]))
+        self._add_functions(self.fill, list(self.pointers), any(self.pointers.values()))
+        self._add_functions(self.widen, self.widened, False)
         self._add_headers()
         return [edit for editor in self.editors.values() for edit in editor.finish()]
+
+    def _add_functions(self, one: Conversion, paths: Sequence[str], pointers: bool) -> None:
+        """Writes a function into the files that call it; once for all where some may be included together."""
+        text = write_cpp(one, self.ros, pointers)
+        own = list(dict.fromkeys(paths))
+        if len(own) > 1 and any(self.code.includes(source.path, path) for source in self.code.sources for path in own):
+            guard = f"{self.light.partition('/')[0]}_{one.name}_defined".upper()
+            text = f"#ifndef {guard}\n#define {guard}\n{text}#endif\n"
+        for path in own:
+            self._get_cpp(path).add_block(text)
 
     def _add_headers(self) -> None:
         """Includes the lighter message where the full one is, and where no such file is included."""
@@ -458,6 +487,7 @@ class _Work:
                 raise EditRefused(f"{where} names its type otherwise")
         if site.role == "publisher" and site.variable is not None:
             self._check_uses(site.variable, where)
+            self._check_readable(site.variable, path)
         if site.variable is not None and not isinstance(editor, PythonEditor):
             self._retype_variable(site.variable, use.fn)
 
@@ -470,6 +500,21 @@ class _Work:
                 raise EditRefused(
                     f"the publisher of {where} is handed on at {place.fn.source.path}:{use.line}, which is not followed"
                 )
+
+    def _check_readable(self, variable: Variable, path: str) -> None:
+        """Raises EditRefused where macros, or lines that did not parse, may publish too."""
+        paths = {path}
+        for cls in self.code.list_class_bodies(variable.owner) if variable.kind == "member" else ():
+            paths |= {cls.source.path, *(fn.source.path for fn in self.code.list_functions(cls))}
+        name = re.compile(rb"\b" + re.escape(get_tail(variable.name).encode()) + rb"\b")
+        for each in sorted(paths & self.topics.reader.uses.files.keys()):
+            file = self.topics.reader.uses.files[each]
+            if variable.name in file.macros:
+                raise EditRefused(f"a macro of {each} names `{variable.name}`, which is not followed")
+            lines = (self.planner.read(each) or b"").split(b"\n") if file.unread else []
+            for first, last in file.unread:
+                if name.search(b"\n".join(lines[first - 1 : last])):
+                    raise EditRefused(f"lines {first} to {last} of {each} name `{variable.name}`, and are not parsed")
 
     def _retype_variable(self, variable: Variable, fn: Fn) -> None:
         """Changes the type that a publisher or subscription is declared with, where it names the message."""
@@ -513,7 +558,7 @@ class _Work:
             editor.retype_parameter(function, place, self.type, self.light, generic)
         else:
             editor.widen_parameter(function, place, names[0], self.type, self.light, self.widen.name)
-            editor.add_block(write_cpp(self.widen, self.ros, False))
+            self.widened.append(fn.source.path)
         if not fn.is_lambda:
             self._retype_declarations(fn, place, where)
 
@@ -551,6 +596,8 @@ class _Work:
                 continue
             editor = self._get_cpp(path)
             for declarator in editor.list_declarations(tail, inside):
+                if editor.count_parameters(declarator) != len(fn.facts.parameters):
+                    continue
                 text = editor.retype_parameter(declarator, place, self.type, self.light, True)
                 whole = declarator.parent.text if declarator.parent is not None else b""
                 if whole is not None and (b"override" in whole or b"virtual" in whole):
@@ -575,6 +622,8 @@ class _Work:
         path, call = use.fn.source.path, use.call
         editor = self._get_editor(path)
         if isinstance(editor, PythonEditor):
+            if len(list_fields(self.planner.find_definition, self.type) or ()) == 1:
+                raise EditRefused(f"{path}:{call.line} may publish the one field that {self.type} has")
             editor.wrap_argument(call.line, get_tail(call.callee), self.fill.name)
             editor.add_import(self.light)
             for type_ in list_python_types(self.fields):

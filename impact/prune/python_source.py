@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+from codecs import BOM_UTF8
 
 from ..rules.fix_actions import Edit
 from .cpp_source import EditRefused
@@ -15,11 +16,13 @@ class PythonEditor:
     def __init__(self, path: str, data: bytes):
         self.path, self.data = path, data
         try:
-            self._tree = ast.parse(data)
+            self._tree = ast.parse(data.decode("utf-8-sig"))
         except (SyntaxError, ValueError, RecursionError, MemoryError):
             raise EditRefused(f"{path} is not read by Python 3") from None
-        self._starts = [0]
-        for line in data.split(b"\n"):
+        if re.search(rb"\r(?!\n)|\f", data):
+            raise EditRefused(f"{path} has lines that end in other ways than Python's own")
+        self._starts = [len(BOM_UTF8) if data.startswith(BOM_UTF8) else 0]
+        for line in data[self._starts[0] :].split(b"\n"):
             self._starts.append(self._starts[-1] + len(line) + 1)
         self.edits: list[Edit] = []
         self._imports: list[str] = []
@@ -91,7 +94,8 @@ class PythonEditor:
             lead = "" if behind > at and not start else "\n\n"
             text = "\n\n".join(self._blocks)
             self.edits.append(Edit(self.path, behind, behind, f"{lead}{text}\n\n"))
-        return self.edits
+        ends = "\r\n" if b"\r\n" in self.data else "\n"
+        return [Edit(one.path, one.start, one.end, one.text.replace("\n", ends)) for one in self.edits]
 
     def _find_end_of_imports(self) -> int:
         """The offset behind the last import that stands before functions and classes."""

@@ -412,3 +412,109 @@ def test_a_pruned_workspace_has_nothing_more_to_prune(tmp_path):
     shutil.copytree(FLEET, tmp_path / "fleet")
     write_copy(tmp_path / "fleet", tmp_path / "copy", prepare(tmp_path / "fleet"))
     assert prepare(tmp_path / "copy").plan.plans == ()
+
+
+# Files as other editors write them: what is put before each, and how lines end; non-ASCII text stands before the edits.
+WRITTEN = {"a byte order mark": ("\ufeff", "\n"), "other line ends": ("", "\r\n"), "both": ("\ufeff", "\r\n"),
+           "plain": ("", "\n")}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WRITTEN)
+def test_files_keep_their_bytes_besides_the_change(name, tmp_path):
+    mark, end = WRITTEN[name]
+    code = {
+        "nodes/src/talk.cpp": TALK.replace("PUBLISH", "/* größer → ∞ 🤖 */ pub.publish(state);"),
+        "nodes/src/hear.cpp": HEAR.replace("BEFORE", "// Ärger\n").replace(
+            "PARAMETER", "const msgs::State::ConstPtr& state").replace("BODY", "/* ü */ last = state;").replace(
+            "// Ärger", "// Ärger\nmsgs::State::ConstPtr last;\nint f() { return last->level; }"),
+    }  # fmt: skip
+    write(tmp_path, {**ROS1, **dict.fromkeys(code, "")})
+    for path, text in code.items():
+        (tmp_path / path).write_bytes((mark + text.replace("\n", end)).encode())
+    prepared = prepare(tmp_path)
+    changed = {path: data.decode() for path, data in prepared.plan.changed.items()}
+    talk, hear = changed["nodes/src/talk.cpp"], changed["nodes/src/hear.cpp"]
+    assert talk.startswith(f"{mark}#include <ros/ros.h>{end}#include <msgs/State.h>{end}#include <msgs/StateLight.h>")
+    assert "/* größer → ∞ 🤖 */ pub.publish(fill_state_light(state));" in talk
+    assert f"void onState(const msgs::StateLight::ConstPtr& state_light) {{{end}" in hear
+    assert "/* ü */ last = state;" in hear
+    assert talk.count("\n") == talk.count(end) and hear.count("\n") == hear.count(end)
+
+
+def test_a_source_that_is_not_utf8_keeps_its_bytes(tmp_path):
+    write(tmp_path, {**ROS1, "nodes/src/hear.cpp": HEAR.replace("BEFORE", "").replace(
+        "PARAMETER", "const msgs::State& state").replace("BODY", "use(state.level);")})  # fmt: skip
+    text = TALK.replace("PUBLISH", "/* gr\u00f6\u00dfer */ pub.publish(state);").encode("latin-1")
+    (tmp_path / "nodes/src/talk.cpp").write_bytes(text)
+    changed = prepare(tmp_path).plan.changed["nodes/src/talk.cpp"]
+    assert b"/* gr\xf6\xdfer */ pub.publish(fill_state_light(state));" in changed
+
+
+# What is named but not read has to be there: the callback, and what is kept.
+NAMED = {
+    "a part": ("const msgs::State& state", "auto p = state.at; use(state.level);", ("level", "at.x")),
+    "written": ("msgs::State state", "state.at.y = 1; use(state.level);", ("level", "at.y")),
+    "cleared": ("msgs::State state", "state.points.clear(); use(state.level);", ("level", "points.x")),
+    "counted": ("const msgs::State& state", "int n = 0; for (const auto& p : state.points) ++n; use(n);", ("points",)),
+    "nothing named": ("const msgs::State& state", "use(state.level);", ("level",)),
+}
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_what_is_named_is_kept(name, tmp_path):
+    parameter, body, kept = NAMED[name]
+    prepared = plan_ros1(tmp_path, body, parameter)
+    assert [plan.keep for plan in prepared.plan.plans] == [kept]
+
+
+def test_names_are_kept_in_python(tmp_path):
+    files = {name: text for name, text in ROS1.items() if name.startswith("msgs/") or name == "nodes/package.xml"}
+    hear = PYTHON["nodes/scripts/hear.py"].replace("sum(p.y for p in state.points)", "state.level, state.at")
+    hear = hear.replace("rospy.loginfo(", "at = state.at; print(").replace(", state.at)", ")")
+    prepared = prepare(write(tmp_path, {**files, **PYTHON, "nodes/scripts/hear.py": "\ufeff" + hear}))
+    assert [plan.keep for plan in prepared.plan.plans] == [("level", "at.x")]
+    assert "import rospy" in prepared.plan.changed["nodes/scripts/hear.py"].decode("utf-8-sig").split("\n")
+
+
+def test_headers_that_are_included_together_define_a_function_once(tmp_path):
+    helper = """#pragma once
+#include <msgs/State.h>
+struct KIND {
+  void send() { msgs::State state; pub.publish(state); }
+  ros::NodeHandle nh;
+  ros::Publisher pub = nh.advertise<msgs::State>("state", 1);
+};
+"""
+    more = {f"nodes/include/nodes/{name}.h": helper.replace("KIND", name) for name in ("One", "Two")}
+    more["nodes/src/hear.cpp"] = HEAR.replace("BEFORE", '#include "nodes/One.h"\n#include "nodes/Two.h"').replace(
+        "PARAMETER", "const msgs::State& state").replace("BODY", "use(state.level);")  # fmt: skip
+    prepared = prepare(write(tmp_path, {**ROS1, **more, "nodes/src/talk.cpp": TALK.replace("PUBLISH", "")}))
+    assert len(prepared.plan.plans) == 1
+    for path in ("nodes/include/nodes/One.h", "nodes/include/nodes/Two.h"):
+        text = prepared.plan.changed[path].decode()
+        assert "#ifndef MSGS_FILL_STATE_LIGHT_DEFINED\n#define MSGS_FILL_STATE_LIGHT_DEFINED\n// Fills" in text
+        assert text.count("#endif") == 1
+
+
+def test_overloads_of_a_callback_keep_their_type(tmp_path):
+    before = "void onState(const msgs::State& state, int more);"
+    prepared = plan_ros1(tmp_path, "use(state.level);", "const msgs::State& state", before)
+    assert len(prepared.plan.plans) == 1
+    assert before in prepared.plan.changed["nodes/src/hear.cpp"].decode()
+
+
+def test_a_macro_that_publishes_is_no_publish_statement(tmp_path):
+    publish = "pub.publish(state); SEND(state);\n#define SEND(what) pub.publish(what)"
+    (refusal,) = plan_ros1(tmp_path, "use(state->level);", publish=publish).plan.refusals
+    assert refusal.reason == "a macro of nodes/src/talk.cpp names `pub`, which is not followed"
+
+
+def test_what_may_be_the_one_field_of_a_message_is_not_wrapped(tmp_path):
+    files = {name: text for name, text in ROS1.items() if name.startswith("msgs/") or name == "nodes/package.xml"}
+    files["msgs/msg/State.msg"] = "Point at\n"
+    talk = PYTHON["nodes/scripts/talk.py"].replace("pub.publish(state)", "pub.publish(Point(1, 2))")
+    hear = PYTHON["nodes/scripts/hear.py"].replace("sum(p.y for p in state.points)", "state.at.x")
+    talk = talk.replace("State(level=3)", "State()").replace("    state.points.append(Point(1, 2))\n", "")
+    files.update({**PYTHON, "nodes/scripts/talk.py": talk, "nodes/scripts/hear.py": hear})
+    (refusal,) = prepare(write(tmp_path, files)).plan.refusals
+    assert refusal.reason == "nodes/scripts/talk.py:9 may publish the one field that msgs/State has"

@@ -218,7 +218,12 @@ class CppCode:
     def _list_arguments(self, node: Node | None, path: Sequence[Node]) -> tuple[Expr, ...] | None:
         if node is None or node.kind_id not in LISTS or node.has_error:
             return None
-        return tuple(self._make_expr(each, path) for each in get_items(node))
+        items = get_items(node)
+        starts, ends = [each.start_byte for each in items], [each.end_byte for each in items]
+        # Of branches between the arguments, one was parsed, and which of them is compiled is not known.
+        if any(map(self._has_directive, (node.start_byte, *ends), (*starts, node.end_byte))):
+            return None
+        return tuple(self._make_expr(each, path) for each in items)
 
     def _is_declared(self, node: Node, parent: Node) -> bool:
         """Whether a name stands where it is declared."""

@@ -2,6 +2,7 @@
 
 import re
 
+from ...facts.cmake import Command
 from .blocks import CommandCall
 from .build import FoundPackage
 from .interpreter import Interpreter, handles
@@ -80,7 +81,8 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
     quiet = "QUIET" in flags
     conditions = run.merge_with(name)
     add_module(run, f"Find{name}")
-    if name == "catkin":
+    of_catkin = name == "catkin" or (bool(components) and _is_wrapper_of_catkin(run, str(name)))
+    if of_catkin:
         run.add_found(FoundPackage(name="catkin", how="find_package", at=run.locate(name.at), required=required,
                             quiet=quiet,
                             version=version, conditions=conditions))  # fmt: skip
@@ -119,8 +121,26 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
         if name.upper() != name:
             run.assign(run.scope, f"{name.upper()}_FOUND", found)
     run.extend(str(name), name.at)
-    if name == "catkin":
+    if of_catkin:
         _set_catkin_variables(run, call)
+
+
+def _is_wrapper_of_catkin(run: Interpreter, name: str) -> bool:
+    """Whether a configuration or find module of the tree answers that finds catkin itself: the components that it is
+    given are then packages of catkin."""
+    places = ((f"{name}_DIR", f"{name}Config.cmake"), (f"{name}_DIR", f"{name.lower()}-config.cmake"))
+    for variable, file in (*places, ("CMAKE_MODULE_PATH", f"Find{name}.cmake")):
+        held = run.get(variable)
+        for directory in held.words if held is not None else ():
+            path = run.make_relative(run.resolve(f"{directory}/{file}")) if directory else None
+            facts = run.read(path) if path is not None else None
+            if facts is not None and any(_is_search_for_catkin(command) for command in facts.commands):
+                return True
+    return False
+
+
+def _is_search_for_catkin(command: Command) -> bool:
+    return command.name == "find_package" and [one.text for one in command.arguments[:1]] == ["catkin"]
 
 
 def _run_module(run: Interpreter, call: CommandCall, name: str) -> None:

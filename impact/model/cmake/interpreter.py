@@ -102,7 +102,7 @@ _ROS_ENVIRONMENT = re.compile(r"\bENV\{(ROS_(?:DISTRO|VERSION|PYTHON_VERSION))\}
 # What is collected under the names that Build has for it.
 _COLLECTED = (
     *("macros", "found", "installs", "exports", "generated", "uses", "include_dirs", "links", "unresolved", "files"),
-    *("message_files", "made", "handed_on", "refused", "read_elsewhere", "asked", "stops"),
+    *("message_files", "made", "from_found", "handed_on", "refused", "read_elsewhere", "asked", "stops"),
     "dependency_calls",
 )
 
@@ -156,6 +156,7 @@ class Interpreter:
         self.modules: set[str] = set()
         self.guarded: set[str] = set()
         self.made: dict[str, None] = {}
+        self.from_found: dict[tuple[str, str], None] = {}
         self.handed_on: dict[FoundPackage, None] = {}
         self.handing_on = False
         # Sources given to commands that nothing defines, with the conditions that they are given under.
@@ -1134,6 +1135,8 @@ class Interpreter:
         relative = self.make_relative(self.resolve(text))
         if relative is None:
             return self.clean(text)
+        if "/../" in text and (owner := self.exported.get(text.partition("/../")[0], self.package)) != self.package:
+            self.from_found[relative, owner] = None
         return relative + "/" if text.endswith("/") and relative else relative
 
     def clean(self, text: str) -> str:

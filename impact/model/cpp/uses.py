@@ -145,6 +145,8 @@ class ApiUses:
             name = f"{full}::{use.word}"
             if name in self.vocabulary.names:
                 return None if self.resolver.declares_in(full, use.word) else self._make_use(name, use, True, ())
+            if full in self.vocabulary.classes:
+                break  # a nearer class of this name, or one of another namespace that is opened as well
         type_ = self.resolver.resolve_name(scope, use.place)
         return self._find_member(type_, use) if type_ is not None and not type_.own and type_.plain else None
 

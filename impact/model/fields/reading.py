@@ -51,12 +51,14 @@ class Escape(NamedTuple):
 class Reading(NamedTuple):
     """reads: leaves by where they are read first. sizes: arrays of messages whose number of elements is asked for.
     escapes: in the order in which they were found; what is below their fields counts as read. holders: variables that
-    hold the message, with () for the whole of it, or a field."""
+    hold the message, with () for the whole of it, or a field. named: fields that the code names, whatever it does with
+    them."""
 
     reads: dict[Path, ReadAt]
     sizes: dict[Path, ReadAt]
     escapes: tuple[Escape, ...]
     holders: frozenset[Holder] = frozenset()
+    named: frozenset[Path] = frozenset()
 
 
 class FieldReader:
@@ -80,6 +82,7 @@ class _Walk:
         self.reads: dict[Path, ReadAt] = {}
         self.sizes: dict[Path, ReadAt] = {}
         self.escapes: dict[tuple[Path, str], Escape] = {}
+        self.named: dict[Path, ReadAt] = {}
         self.seen: set[Holder] = set()
         self.left: list[Holder] = []
         self.results = _Results()
@@ -101,7 +104,20 @@ class _Walk:
         for variable, place, spot in self.strange:
             if not self._holds_other(variable, place):
                 self.escape_at(spot, f"`{place.use.path}` is no field that is known", place)
-        return Reading(self.reads, self.sizes, tuple(self.escapes.values()), frozenset(self.seen))
+        self._count_elements()
+        return Reading(
+            self.reads, self.sizes, tuple(self.escapes.values()), frozenset(self.seen), frozenset(self.named)
+        )
+
+    def _count_elements(self) -> None:
+        """Elements of which nothing is read may still be counted: `for p in points: number += 1`."""
+        used = [*self.reads, *self.sizes, *(one.field for one in self.escapes.values())]
+        for path, place in self.named.items():
+            if path[-1] != "[]":
+                continue
+            array = path[:-1]
+            if not any(one[: len(array)] == array or array[: len(one)] == one for one in used):
+                self.sizes.setdefault(array, place)
 
     def _follow(self, holder: Holder) -> None:
         """All uses of a variable that holds a field."""
@@ -170,6 +186,8 @@ class _Walk:
     def judge(self, place: UsePlace, spot: Spot, variable: Variable | None = None) -> None:
         """What a use means for what it is a use of. variable: whose use it is; None for what a function gives back."""
         use = place.use
+        if spot.kind != "none" and spot.path:
+            self.named.setdefault(spot.path, ReadAt(place.fn.source.path, use.line))
         if use.how in ("write", "change") and not (use.how == "write" and use.to not in ("=", "del", "")):
             return
         if spot.kind == "leaf":

@@ -22,7 +22,7 @@ from ..flow.join import Join
 from ..flow.workspace import get_facts, get_flow, list_code
 from ..workspace import Workspace
 from .places import Uses
-from .reading import Escape, FieldReader, ReadAt, Reading, select_parameters
+from .reading import Escape, FieldReader, Holder, ReadAt, Reading, select_parameters
 from .report import EscapedField, FieldAt, FieldReport, PublisherFields, SubscriberFields, TopicFields
 from .shapes import Path, Shapes, show
 from .writing import Writing, find_writes
@@ -263,7 +263,8 @@ class TopicReader:
         reads = {path: place for one in reversed(readings) for path, place in one.reads.items()}
         sizes = {path: place for one in reversed(readings) for path, place in one.sizes.items()}
         escapes = tuple(dict.fromkeys(escape for one in readings for escape in one.escapes))
-        return Reading(reads, sizes, escapes, frozenset().union(*(one.holders for one in readings)))
+        holders = frozenset[Holder]().union(*(one.holders for one in readings))
+        return Reading(reads, sizes, escapes, holders, frozenset[Path]().union(*(one.named for one in readings)))
 
     # Publishers
 

@@ -18,7 +18,7 @@ Use instead
 
 Not reported
     Names in lower case, to which an `x-config.cmake` may answer; names with several spellings; find modules of the
-    workspace.
+    workspace; packages whose build fetches sources before, which may bring a find module.
 """
 
 from ...targets.providers.library import find_misspelled_version
@@ -44,6 +44,8 @@ def cmake_name_case(view: TargetView, package: Package):
 def _list_unknown_spellings(view: TargetView, package: Package):
     """find_package names that are known in another case alone: CMake looks for files of this very name."""
     own = view.workspace.cmake_files
+    if any(target.kind == "fetched" for target in package.build.targets):
+        return
     for f in package.build.found:
         if f.how != "find_package" or not f.required or not view.is_sure(f.conditions) or view.is_package(f.name):
             continue

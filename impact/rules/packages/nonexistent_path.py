@@ -108,6 +108,8 @@ def _find_fault(view: TargetView, package: Package, use: WrittenPath) -> tuple[s
     if path.startswith("../") or (package.path and not f"{path}/".startswith(f"{package.path}/")):
         # What lies in another package has to be there; of what lies in none, the packages cannot tell.
         owner = next((other for other in view.list_built() if path.startswith(f"{other.path}/")), None)
+        if owner is not None and (path, owner.name) in package.build.from_found:
+            return "", ""  # found beside the CMake files that the owner installs
         if owner is not None and path not in owner.files and path not in owner.folders:
             return "", ""
         return "outside", posixpath.relpath(path, package.path or ".")

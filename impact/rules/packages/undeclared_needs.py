@@ -4,6 +4,7 @@ import re
 from typing import NamedTuple
 
 from ....edges.memory import cache_in_derived
+from ...model.cmake.links import list_given_items
 from ...model.misspelling import fold_name, is_one_edit
 from ...targets.platform import strip_to_letters
 from ..vocabulary import Declare, Need, Package, TargetView, Text, translate_tag
@@ -66,11 +67,28 @@ def find_undeclared(view: TargetView, package: Package) -> Undeclared:
         system = need.providers[0].kind == "system"
         if system and environment and need.how == "import":
             continue
+        if need.how == "include" and view.unknown_contents.may_install_folder(package, need.subject):
+            continue
         carried = system and need.how != "import"
+        if carried and need.how == "include" and _may_lie_on_machine(package, need):
+            continue
         if not (carried and view.unknown_contents.is_likely(package, need.subject)):
             kind = found.borrowed if view.is_met(need.providers, closure) else found.missing
             kind.setdefault(name, []).append(need)
     return found
+
+
+def _may_lie_on_machine(package: Package, need: Need) -> bool:
+    """Whether what compiles an include searches a folder of the machine that is none of the platform's packages."""
+    if not need.targets:
+        searched = [path.path for path in package.build.list_paths() if path.how == "include"]
+    else:
+        searched = list(list_given_items(package, need.targets))
+    return any(_OF_MACHINE.match(item) for item in searched)
+
+
+# Not the folders that compilers search anyway, or that packages of the platform and of ROS install into.
+_OF_MACHINE = re.compile(r"/(?!usr/(?:local/)?include/?\Z|usr/(?:include|lib|share)/|opt/ros/).*\binclude\b")
 
 
 def list_sources(view: TargetView, package: Package, need: Need) -> tuple[str, ...]:

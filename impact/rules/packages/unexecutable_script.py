@@ -18,7 +18,8 @@ Use instead
     install(PROGRAMS scripts/measure DESTINATION lib/${PROJECT_NAME})
 
 Not reported
-    Launch files and other scripts that programs run as data, or that CMake code gives to the interpreter.
+    Launch files and other scripts that programs run as data, or that CMake code gives to the interpreter; modules that
+    programs of the same folder import, unless they are nodes or something starts them.
 """
 
 import posixpath
@@ -72,6 +73,8 @@ def _list_not_executable(view: TargetView, package: Package, installs) -> Iterat
     scripts = {*package.linked.scripts, *package.linked.shells}
     # Nodes of ROS 1, which rosrun and roslaunch start from the package's share folder too.
     nodes = {i.at.path for i in package.linked.imports if i.module == "rospy" and view.target.ros == 1}
+    modules = set(package.linked.imported_beside) - nodes
+    started_by_name = list_references(view, package, "executable") if modules else {}
     for install in installs:
         among_programs = _OF_PROGRAMS.search(install.destination)
         if install.kind == "directory" and not install.executable:
@@ -88,7 +91,7 @@ def _list_not_executable(view: TargetView, package: Package, installs) -> Iterat
             if not started or path in programs or inside.endswith(_RUN_BY):
                 continue
             name = posixpath.basename(path)
-            if name in package.linked.interpreted:
+            if name in package.linked.interpreted or (path in modules and name not in started_by_name):
                 continue
             sure = bool(among_programs) or path in nodes
             doubts = (sure or Doubt.LATE, view.is_sure(install.conditions) or Doubt.CONDITIONAL)

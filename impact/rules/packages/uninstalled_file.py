@@ -15,7 +15,8 @@ Use instead
     install(DIRECTORY launch config DESTINATION share/${PROJECT_NAME})
 
 Not reported
-    Files that the build makes; names that are not known; data_files that setup.py computes.
+    Files that the build makes; folders in which only programs have left something, such as locks; names that are not
+    known; data_files that setup.py computes.
 """
 
 import posixpath
@@ -99,7 +100,8 @@ def _list_opened(package: Package, installs, opened: Mapping[str, At]) -> Iterat
         path = posixpath.normpath(posixpath.join(package.path, name))
         files = [path] if path in package.files else _list_below(package, path)
         inside = posixpath.relpath(path, package.path or ".")
-        if not files or inside == "." or _lies_in(places, package.name, inside):
+        left_by_programs = files != [path] and all(map(_LEFT_BY_PROGRAMS.search, files))
+        if not files or inside == "." or left_by_programs or _lies_in(places, package.name, inside):
             continue
         taken = any(is_installed(installs, file) for file in files)
         if not taken or places is not None:
@@ -116,6 +118,10 @@ def _list_opened(package: Package, installs, opened: Mapping[str, At]) -> Iterat
             share, kind = f"share/{package.name}", f"{kind}, data_files" if kind != "elsewhere" else kind
         data = {"file": name, "share": share, "opener": opener}
         yield Diagnostic(at, folder, package.name, data, kind, together=_FOLDERS)
+
+
+# What keeps an empty folder in a repository, and what a program that has its state in a folder leaves there.
+_LEFT_BY_PROGRAMS = re.compile(r"(?:/\.[^/]*|\.(?:lock|pid|log))\Z")
 
 
 def _list_below(package: Package, folder: str) -> list[str]:

@@ -5,7 +5,8 @@ What it does
     well as annotations that it evaluates and cannot (`list[int]`, `int | None`). On a target with Python 2 it reports
     what the newest distro's Python 3 does not accept, syntax of Python 3 in files whose first line names `python`, and
     `print` with keywords in modules that do not import it from `__future__`.
-    Setup files that the build runs are included, and lines that no Python accepts, except in templates.
+    Setup files that the build runs are included, and lines that no Python accepts, except in templates, and in files
+    without the ending `.py` that nothing installs by their name or starts: their first line may be there for editors.
 
 Why it breaks
     The node stops with a SyntaxError, or a TypeError for annotations, before it runs.
@@ -22,11 +23,13 @@ Use instead
     except urllib.error.URLError as e:
 """
 
+import posixpath
 import sys
 from collections.abc import Iterator
 
 from ...facts.python.source import NEVER_PYTHON, NO_PYTHON
 from ...targets.distro.distro import DistroTarget
+from ..packages.install_rules import list_references
 from ..python_files import RejectedUse, report_refused
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
 
@@ -62,7 +65,7 @@ def python_version(view: TargetView):
             elif use.needs in (NO_PYTHON, NEVER_PYTHON):
                 # What a newer Python than this one may read is not known.
                 known = use.needs == NEVER_PYTHON or target.python <= sys.version_info.minor
-                if view.target.python_major >= 3 and known:
+                if view.target.python_major >= 3 and known and not _may_be_no_python(view, package, use.at.path):
                     yield RejectedUse(use, use.what, "none")
             elif use.needs > max(2, target.python) and view.target.python_major >= 3:
                 yield RejectedUse(use, use.what, "newer", use.needs)
@@ -76,3 +79,13 @@ def python_version(view: TargetView):
                 yield Diagnostic(use.at, use.what, package.name, kind="python 3", doubts=doubts)
             elif use.needs == 0 and use.what.startswith("`print`") and not others:
                 yield Diagnostic(use.at, use.what, package.name, kind="print", doubts=(*doubts, Doubt.LATE))
+
+
+def _may_be_no_python(view: TargetView, package: Package, path: str) -> bool:
+    """Whether the first line alone says that a file is Python: neither its ending, nor that it is a program."""
+    if path.endswith((".py", ".pyw")):
+        return False
+    items = (item for i in package.build.installs if i.kind in ("programs", "python", "files") for item in i.items)
+    named = any(posixpath.normpath(item) == path for item in items)
+    name = posixpath.basename(path)
+    return not (named or name in package.linked.interpreted or name in list_references(view, package, "executable"))

@@ -66,12 +66,10 @@ class Override:
         (`override`), and whether it was before the target's version; None where it overrides what the target has, or
         where that cannot be known. line: packages and names of the method in the base class, and in the bases of that.
         """
-        self.parameters = tuple(
-            parameter.name
-            for package, name in line
-            for one in self._list_entities(package, name.rpartition("::")[0])
-            for parameter in one.template or ()
-        )
+        classes = [one for package, name in line for one in self._list_entities(package, name.rpartition("::")[0])]
+        self.parameters = tuple(parameter.name for one in classes for parameter in one.template or ())
+        if any(_is_derived_from_parameter(one) for one in classes):
+            return None  # whoever stands for it may have the method
         # Where others came beside a form that stayed, a later change took that form, maybe from a base class.
         found = min(self._iterate_lost_changes(line), key=lambda one: one[0], default=None)
         return found and found[1:]
@@ -265,6 +263,12 @@ class Override:
         for one in found:
             found.extend(other for other in self.offers.list_exports(one) or () if other not in found)
         return found
+
+
+def _is_derived_from_parameter(class_: Entity) -> bool:
+    """Whether a class template is derived from what it is given."""
+    parameters = {parameter.name for parameter in class_.template or ()}
+    return any(base.type.removesuffix("...").strip() in parameters for base in class_.bases)
 
 
 _NAME = re.compile(r"[A-Za-z_]\w*(?:::\w+)*")

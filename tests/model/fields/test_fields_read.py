@@ -315,8 +315,8 @@ PYTHON = {
                                      "    return x\ndef see(self):\n    return self.get(3).level", "", "level", ""),
     "given back by what is around": ("self.last = msg", "def get(self, n):\n    found = None\n    def see():\n"
                                      "        nonlocal found\n        found = self.last\n    see()\n"
-                                     "    return found\ndef tick(self):\n    return self.get(1).level", "",
-                                     "level", ""),
+                                     "    return found\ndef tick(self):\n    return self.get(1).level", "", "level",
+                                     ""),
     "given back by a function that is called": ("self.see(msg)", "def see(self, status):\n    self.keep(status)\n"
                                                 "def keep(self, status):\n    global kept\n    kept = status\n"
                                                 "def get(self, n):\n    return kept\n"
