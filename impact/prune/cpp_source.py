@@ -277,9 +277,9 @@ class CppEditor:
             at += blank.end() if blank is not None else 0
             self.replace(at, at, text if not at or self.data[at - 1 : at] == b"\n" else f"\n{text}")
             self._blocks.clear()
-        return self._place_edits()
+        return self._translate_edits()
 
-    def _place_edits(self) -> list[Edit]:
+    def _translate_edits(self) -> list[Edit]:
         """The edits by offsets of the file's own bytes, with its line breaks. Raises EditRefused."""
         at = list_offsets(self._original)
         if len(at) != len(self.data) + 1:
