@@ -61,6 +61,12 @@ def collect_fields(
     return FieldAnswer(FieldReport(tuple(chosen), unknown), sizes)
 
 
+def read_section(data: bytes | None) -> Section | None:
+    """The fields of a message by the text of its definition, None where there is none."""
+    facts = extract(data, "msg") if data is not None else None
+    return facts.sections[0] if facts is not None and facts.sections else None
+
+
 class KnownMessages:
     """The messages of a workspace and of released packages, as text."""
 
@@ -85,9 +91,7 @@ class KnownMessages:
     def find_section(self, type_: str) -> Section | None:
         """The fields of the message `package/Name`, None where they are not known."""
         if type_ not in self._sections:
-            data = self.find(type_)
-            facts = extract(data, "msg") if data is not None else None
-            self._sections[type_] = facts.sections[0] if facts is not None and facts.sections else None
+            self._sections[type_] = read_section(self.find(type_))
         return self._sections[type_]
 
     def measure(self, topic: TopicFields, length: int) -> TopicSize | None:

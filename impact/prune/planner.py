@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from ...edges.groups import group_pairs
+from ..analysis.fields import read_section
 from ..analysis.fix import apply, declare_dependency
 from ..facts.interface import PRIMITIVES, TIMES, extract, make_full_name
 from ..model.fields.reading import Reading, select_parameters
@@ -185,7 +186,7 @@ class Planner:
         for topic in group:
             if topic.open:
                 return f"{topic.open[0]}; if nobody else reads {topic.topic}, say --assume-closed {topic.topic}"
-            if not topic.publishers and not any(self._list_endpoints(topic, "publisher")):
+            if not topic.publishers and not any(self.list_endpoints(topic, "publisher")):
                 return "nobody here publishes it, so that nobody could fill a lighter message"
         if not self._list_dropped(group):
             rows = (one for topic in group for one in topic.subscribers)
@@ -203,14 +204,15 @@ class Planner:
         found: set[str] = set()
         dropped = set(self._list_dropped(group))
         for topic in group:
-            for endpoint in self._list_endpoints(topic, "subscriber"):
+            for endpoint in self.list_endpoints(topic, "subscriber"):
                 for path in self.topics.read(self.topics.list_callbacks(endpoint), endpoint, topic.type).named:
                     below = [leaf for leaf in topic.fields if _split(leaf)[: len(path)] == path]
                     if all(leaf in dropped and leaf not in found for leaf in below):
                         found.update(sorted(below, key=lambda leaf: ("[]" in leaf, below.index(leaf)))[:1])
         return found
 
-    def _list_endpoints(self, topic: TopicFields, role: str) -> Iterator[Endpoint]:
+    def list_endpoints(self, topic: TopicFields, role: str) -> Iterator[Endpoint]:
+        """The endpoints of a topic, publishers or subscribers."""
         for one in self.topics.graph.endpoints:
             if one.topic == topic.topic and one.type == topic.type and one.role == role:
                 yield one
@@ -348,9 +350,7 @@ class Planner:
 
     def _measure(self, type_: str, texts: Mapping[str, bytes]) -> int:
         def find_section(name: str):
-            data = texts.get(name) or self.find_definition(name)
-            facts = extract(data, "msg") if data is not None else None
-            return facts.sections[0] if facts is not None and facts.sections else None
+            return read_section(texts.get(name) or self.find_definition(name))
 
         encoding = "ros1" if self.workspace.ros == 1 else "cdr"
         try:
@@ -430,7 +430,7 @@ class _Work:
         found: dict[SiteKey, Site] = {}
         for topic in self.group:
             for role in ("subscriber", "publisher"):
-                for endpoint in self.planner._list_endpoints(topic, role):
+                for endpoint in self.planner.list_endpoints(topic, role):
                     where = f"{endpoint.path}:{endpoint.line}"
                     if endpoint.implied or endpoint.framework not in _PLAIN:
                         raise EditRefused(f"{where} is made by {endpoint.framework or 'a framework'}, not by the code")
@@ -598,11 +598,10 @@ class _Work:
             for declarator in editor.list_declarations(tail, inside):
                 if editor.count_parameters(declarator) != len(fn.facts.parameters):
                     continue
-                text = editor.retype_parameter(declarator, place, self.type, self.light, True)
+                editor.retype_parameter(declarator, place, self.type, self.light, True)
                 whole = declarator.parent.text if declarator.parent is not None else b""
                 if whole is not None and (b"override" in whole or b"virtual" in whole):
                     raise EditRefused(f"{where} is virtual")
-                del text
 
     # Publish statements
 

@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 from ...facts.field_uses import PathUse
 from ...facts.flow import FlowExpr
-from ..flow.calls import Calls
 from ..flow.code import FlowCode, Fn, Variable, get_tail
 from ..flow.types import Cls, find_interface, split_name
 from .places import UsePlace, Uses, split_path
@@ -64,8 +63,8 @@ class Reading(NamedTuple):
 class FieldReader:
     """Reads for a body of code."""
 
-    def __init__(self, code: FlowCode, calls: Calls, uses: Uses, shapes: Shapes):
-        self.code, self.calls, self.uses, self.shapes = code, calls, uses, shapes
+    def __init__(self, code: FlowCode, uses: Uses, shapes: Shapes):
+        self.code, self.uses, self.shapes = code, uses, shapes
 
     def read_parameter(self, fn: Fn, names: Iterable[str], type_: str) -> Reading:
         """What is read of a message `package/Name` that a function is given as parameters of some names."""

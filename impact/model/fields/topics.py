@@ -107,7 +107,7 @@ class TopicReader:
         types = {one.type for one in graph.endpoints if "/" in one.type}
         shapes = Shapes(describe_interfaces(workspace, sorted(("topic", type_) for type_ in types)))
         self.shapes = shapes
-        self.reader = FieldReader(join.code, join.calls, Uses(join.code, files), shapes)
+        self.reader = FieldReader(join.code, Uses(join.code, files), shapes)
         self._readings: dict[tuple[tuple[str, ...], str], Reading] = {}
         for one in graph.endpoints:
             for fn in self.list_callbacks(one) if one.role == "subscriber" and one.type else ():
