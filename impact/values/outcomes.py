@@ -1,7 +1,8 @@
 """What an exploration gives, whichever executor made it: inputs, outcomes with their conditions, bounds.
 
-An executor (LLVM IR for C++, `ast` for Python) runs one callback on symbolic inputs. Every way through it is an
-`CallbackPath`; its condition is a conjunction of z3 terms over the inputs. Projections, witnesses and reports read these.
+An executor (LLVM IR for C++, `ast` for Python) runs one callback on symbolic inputs. Every way through it is a
+`CallbackPath`; its condition is a conjunction of z3 terms over the inputs. Projections, witnesses and reports read
+these.
 """
 
 from __future__ import annotations
