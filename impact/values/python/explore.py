@@ -14,7 +14,7 @@ from ..outcomes import Bounds, CallbackPath, CrashKind, Exploration, Reaction
 from .library import make_like
 from .machine import Machine
 from .messages import Messages
-from .modules import Class, FindModule, Function, Handle, Instance, ModuleCode, Scope
+from .modules import Class, FindModule, Function, Handle, Instance, ModuleCode, Scope, Unsettled
 from .run import Run, ThrownError
 from .terms import Items, NotModelledError, Opaque, Record, Text, is_number
 
@@ -145,11 +145,7 @@ def _make_crash(run: Run, error: ThrownError) -> CallbackPath | None:
         return _make_path(
             run, Reaction.UNKNOWN, reason=f"a condition before {error.name} that the solver could not decide"
         )
-    kind = _KINDS.get(error.name, CrashKind.EXCEPTION)
-    if error.name in ("TypeError", "AttributeError") and "None" in error.detail:
-        kind = CrashKind.NULL
-    elif error.name in ("ValueError", "OverflowError") and "convert float" in error.detail:
-        kind = CrashKind.FLOAT_TO_INTEGER
+    kind = find_crash_kind(error.name, error.detail)
     detail = f"{error.name}: {error.detail}" if error.detail else error.name
     if error.name == "SystemExit":
         return _make_path(run, Reaction.HANDLED, detail=detail)
@@ -157,6 +153,15 @@ def _make_crash(run: Run, error: ThrownError) -> CallbackPath | None:
         Reaction.CRASH, tuple(run.condition), tuple(run.effects), tuple(run.logs), tuple(run.sent), kind, error.place,
         detail, assumed=tuple(run.assumed),
     )  # fmt: skip
+
+
+def find_crash_kind(name: str, detail: str) -> CrashKind:
+    """The kind of crash that an exception of Python is, by its class and text."""
+    if name in ("TypeError", "AttributeError") and "None" in detail:
+        return CrashKind.NULL
+    if name in ("ValueError", "OverflowError") and "convert float" in detail:
+        return CrashKind.FLOAT_TO_INTEGER
+    return _KINDS.get(name, CrashKind.EXCEPTION)
 
 
 def _find_callback(machine: Machine, module: ModuleCode, callback: CallbackCode) -> tuple[Class | None, Function]:
@@ -215,16 +220,14 @@ def _make_node(machine: Machine, cls: Class, callback: str) -> Instance:
             continue
         if name not in node.members:
             continue
-        node.members[name] = _make_state(machine, f"this.{name}", node.members[name], methods - makers)
+        node.members[name] = _make_state(machine, f"this.{name}", node.members[name])
     return node
 
 
-def _make_state(machine: Machine, path: str, value: Any, writers: set[str]) -> Any:
+def _make_state(machine: Machine, path: str, value: Any) -> Any:
     """What a member may hold when a message comes: anything of its kind. What began as None may still be that."""
     if value is None:
-        if machine.run.choose(f"{path} is still None"):
-            return None
-        return Opaque(path)
+        return Unsettled(path)
     if is_number(value) or isinstance(value, (str, Text)):
         return make_like(machine, path, value)
     if isinstance(value, Handle):
@@ -333,6 +336,10 @@ class _Watch:
             return
         for name in sorted(self._names):
             before, after = self._before.get(name), self._node.members.get(name)
+            if isinstance(before, Unsettled) and (
+                after is None or (isinstance(after, Opaque) and after.name == before.path)
+            ):
+                continue
             if after is before and _measure(after) == self._sizes.get(name, 0):
                 continue
             if self._differs(before, after):

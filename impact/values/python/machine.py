@@ -24,6 +24,7 @@ from .modules import (
     Moment,
     Outside,
     Scope,
+    Unsettled,
 )  # fmt: skip
 from .run import Run, ThrownError
 from .terms import (
@@ -536,7 +537,11 @@ class Machine:
         """`owner.name`."""
         if isinstance(owner, Instance):
             if name in owner.members:
-                return owner.members[name]
+                value = owner.members[name]
+                if isinstance(value, Unsettled):
+                    value = None if self.run.choose(f"{value.path} is still None") else Opaque(value.path)
+                    owner.members[name] = value
+                return value
             found = owner.cls.find(name)
             if isinstance(found, Function):
                 if "property" in found.decorators or "cached_property" in found.decorators:

@@ -14,7 +14,7 @@ from .terms import Items, Real, Record, Text, Truth, Whole
 FindSection = Callable[[str], Section | None]
 """The fields of `package/Name`, None where they are not known."""
 
-_BITS = {
+BITS = {
     "int8": (8, True), "uint8": (8, False), "byte": (8, True), "char": (8, False), "octet": (8, False),
     "int16": (16, True), "uint16": (16, False), "int32": (32, True), "uint32": (32, False), "int64": (64, True),
     "uint64": (64, False),
@@ -28,31 +28,34 @@ class Messages:
 
     def __init__(self, find_section: FindSection, ros: int):
         self._find_section, self._ros = find_section, ros
+        self.asked: set[str] = set()
+        """Types whose fields or constants somebody wanted to know."""
 
     def find_constants(self, type_: str) -> dict[str, Any]:
         """The constants of a type, as values of Python."""
+        self.asked.add(type_)
         section = self._find_section(type_)
         return {one.name: _parse_constant(one.type, one.value) for one in section.constants} if section else {}
 
     def make_input(self, run: Run, type_: str, path: str) -> Record:
         """A symbolic message of a type; its fields are made when they are looked at."""
-        record = Record(type_, is_known=self._find_fields(type_) is not None)
+        record = Record(type_, is_known=self.find_fields(type_) is not None)
         record.fields["~path"] = path
         return record
 
     def make_empty(self, type_: str) -> Record:
         """A message as its constructor makes it."""
-        return Record(type_, is_known=self._find_fields(type_) is not None)
+        return Record(type_, is_known=self.find_fields(type_) is not None)
 
     def list_fields(self, type_: str) -> list[str]:
         """Names of the fields of a type, in order; none where it is not known."""
-        return [one.name for one in self._find_fields(type_) or ()]
+        return [one.name for one in self.find_fields(type_) or ()]
 
     def find_field(self, run: Run, record: Record, name: str) -> Any:
         """A field of a message, made when it is first asked for; None where the type has none."""
         if name in record.fields:
             return record.fields[name]
-        fields = self._find_fields(record.type)
+        fields = self.find_fields(record.type)
         field = next((one for one in fields or () if one.name == name), None)
         if field is None:
             return None
@@ -66,9 +69,11 @@ class Messages:
 
     def is_of(self, type_: str, name: str) -> bool:
         """Whether a type has a field."""
-        return any(one.name == name for one in self._find_fields(type_) or ())
+        return any(one.name == name for one in self.find_fields(type_) or ())
 
-    def _find_fields(self, type_: str) -> tuple[Field, ...] | None:
+    def find_fields(self, type_: str) -> tuple[Field, ...] | None:
+        """The fields of a type, None where it is not known."""
+        self.asked.add(type_)
         if type_ in _TIMES:
             names = ("secs", "nsecs") if self._ros == 1 else ("sec", "nanosec")
             kinds = (
@@ -94,8 +99,8 @@ class Messages:
 
     def _make_one(self, run: Run, type_: str, owner: str, path: str) -> Any:
         plain = type_.partition("<")[0]
-        if plain in _BITS:
-            return run.get_whole(path, *_BITS[plain])
+        if plain in BITS:
+            return run.get_whole(path, *BITS[plain])
         if plain == "bool":
             return run.get_truth(path)
         if plain in ("float32", "float64"):
@@ -115,7 +120,7 @@ class Messages:
 
     def _make_default_one(self, field: Field, owner: str) -> Any:
         plain = field.type.partition("<")[0]
-        if plain in _BITS:
+        if plain in BITS:
             return 0
         if plain == "bool":
             return False

@@ -96,6 +96,13 @@ class Instance:
     members: dict[str, Any] = field(default_factory=dict)
 
 
+@dataclass(frozen=True, slots=True)
+class Unsettled:
+    """A member of a node that began as None and may hold something by now; which of both is chosen when it is asked."""
+
+    path: str
+
+
 @dataclass(slots=True)
 class Bound:
     """A method with its object."""

@@ -146,9 +146,10 @@ def _calculate_whole(run: Decides, kind: type[ast.operator], left: Whole | int, 
     raise NotModelledError(f"operator {kind.__name__} of integers")
 
 
-def compare(kind: type[ast.cmpop], left: Any, right: Any) -> Truth | bool:
+def compare(kind: type[ast.cmpop], one: Any, other: Any) -> Truth | bool:
     """A comparison of numbers."""
-    left, right = to_whole(left), to_whole(right)
+    left: Any = to_whole(one)
+    right: Any = to_whole(other)
     if not isinstance(left, (Whole, Real)) and not isinstance(right, (Whole, Real)):
         return bool(CONCRETE[kind](left, right))
     if is_whole(left) and is_whole(right):

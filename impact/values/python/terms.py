@@ -142,14 +142,14 @@ def make_real(term: z3.FPRef, span: Span = ANY) -> Real | float:
     return Real(value, span)
 
 
-def extend(value: Whole | int | bool, bits: int) -> z3.BitVecRef:
+def extend(value: Any, bits: int) -> z3.BitVecRef:
     """The bits of a whole number, sign-extended to a width that holds it."""
     if isinstance(value, Whole):
         return z3.SignExt(bits - value.term.size(), value.term) if bits > value.term.size() else value.term
     return z3.BitVecVal(int(value), bits)
 
 
-def get_range(value: Whole | int | bool) -> tuple[int, int]:
+def get_range(value: Any) -> tuple[int, int]:
     """Between which a whole number is."""
     return (value.low, value.high) if isinstance(value, Whole) else (int(value), int(value))
 
@@ -165,7 +165,7 @@ def to_real(value: Any) -> z3.FPRef:
     return z3.FPVal(float(value), FLOAT64)
 
 
-def to_whole(value: Any) -> Whole | int:
+def to_whole(value: Any) -> Any:
     """A truth as a number; others as they are."""
     if isinstance(value, Truth):
         return Whole(z3.If(value.term, z3.BitVecVal(1, 8), z3.BitVecVal(0, 8)), 0, 1)

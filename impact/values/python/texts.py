@@ -190,12 +190,12 @@ def _is_digits(run: Run, own: tuple[Character, ...], given: list[Any]) -> Truth 
 def parse_whole(run: Run, text: Text | str) -> Whole | int:
     """`int(text)`: blanks around, a sign, digits. Raises the ValueError of the program for others; underscores between
     digits are not modelled, and what stands between blanks is any number."""
-    own = list_characters(run, text)
+    own: list[Character] = list(list_characters(run, text))
     if not own:
         raise run.throw("ValueError", "invalid literal for int()")
     blank = [_is_one_of_term(one, _BLANKS) for one in own]
     if run.decide(make_truth(z3.Or(blank[0], blank[-1]))):
-        if not run.decide(make_truth(_is_padded_number(own, blank))):
+        if not run.decide(make_truth(_is_padded_number(tuple(own), blank))):
             raise run.throw("ValueError", "invalid literal for int()")
         most = 10 ** len(own)
         run.assumed["a number between blanks is any number"] = None
@@ -205,7 +205,7 @@ def parse_whole(run: Run, text: Text | str) -> Whole | int:
     negative = _to_term(own[0]) == ord("-")
     signed = z3.Or(negative, _to_term(own[0]) == ord("+"))
     digits = [_is_between(one, "0", "9") for one in own]
-    rest = z3.And(*digits[1:]) if len(own) > 1 else z3.BoolVal(True)
+    rest = z3.And(*digits[1:], z3.BoolVal(True))
     valid = z3.And(rest, z3.Or(digits[0], signed) if len(own) > 1 else digits[0])
     if not run.decide(make_truth(valid)):
         raise run.throw("ValueError", "invalid literal for int()")
