@@ -46,6 +46,10 @@ void ri_member(const char *name, const void *start, uint64_t size) RI_NOEXCEPT;
 // The bytes of a symbolic size without a fork: whether this build fills containers by their layout (the executor) or
 // through their own functions (natively). Defined as a macro by the one who compiles: RI_SYMBOLIC.
 
+// With RI_SYMBOLIC: of the block that begins at start (from operator new), only the first size bytes may be used from
+// here on. A container that is filled by its layout has room for the most elements, and as many as its size says.
+void ri_resize(void *start, uint64_t size) RI_NOEXCEPT;
+
 // Nothing is known from here on: ends this way as unknown. Natively: ends the program with status 77.
 void ri_unknown(const char *what) RI_NOEXCEPT;
 // This way cannot happen in a real node.
