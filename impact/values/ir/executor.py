@@ -12,6 +12,7 @@ import math
 import os
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import z3
@@ -141,6 +142,8 @@ class Executor:
         self.addresses = AddressMap()
         self.exploration = Exploration(inputs={}, bounds=bounds)
         self.pending: list[State] = []
+        # Places among the paths of those on which the callback had not begun.
+        self.early: list[int] = []
         self.globals: dict[str, int] = {}
         self.made_globals: dict[int, tuple[str, MemoryObject]] = {}
         self.instructions = 0
@@ -563,10 +566,23 @@ class Executor:
                 self.exploration.left = len(self.pending)
                 break
             self._run_way(self.pending.pop())
+        self._exclude_early()
         self.exploration.inputs.update(self.solving.inputs)
         self.exploration.instructions = self.instructions
         self.exploration.seconds = time.monotonic() - self.started
         return self.exploration
+
+    def _exclude_early(self):
+        """Where the harness says when the callback begins, what happened before is none of it."""
+        paths = self.exploration.paths
+        if len(self.early) == len(paths):
+            return
+        for number in self.early:
+            path = paths[number]
+            if path.result is not Reaction.UNKNOWN:
+                what = path.crash.value if path.crash is not None else "the end of the program"
+                reason = f"{what} before the callback begins"
+                paths[number] = replace(path, result=Reaction.UNKNOWN, crash=None, reason=reason, effects=(), logs=())
 
     def _is_over(self) -> bool:
         return (
@@ -596,7 +612,7 @@ class Executor:
 
     def _go_on(self, state: State, end: Ended) -> bool:
         """Whether another function runs after one that ended: what initializes variables may fail."""
-        if not state.upcoming or end.result not in (Reaction.UNKNOWN, Reaction.IGNORED):
+        if not state.upcoming or end.result not in (Reaction.UNKNOWN, Reaction.IGNORED) or state.has_begun:
             return False
         if end.result is Reaction.UNKNOWN:
             if time.monotonic() > self.deadline:
@@ -769,6 +785,8 @@ class Executor:
             self.solving.assumed[name] for name in sorted(names) if name in self.solving.assumed
         )
         assumed.update(dict.fromkeys((*state.notes, *state.assumed_notes)))
+        if not state.has_begun:
+            self.early.append(len(self.exploration.paths))
         place = end.place or self.find_place(state)
         if result in (Reaction.HANDLED, Reaction.LOG_ONLY, Reaction.IGNORED):
             place = NOWHERE
@@ -804,10 +822,23 @@ class Executor:
         """The line of the workspace that runs: of the innermost frame that has one."""
         for frame in reversed(state.frames):
             if frame.index < len(frame.block.instructions):
-                place = self.places.find_place(frame.function.unit, frame.get_instruction().location)
+                place = self.places.find_place(frame.function.unit, self._find_location(frame))
                 if place.path:
                     return place
         return NOWHERE
+
+    def _find_location(self, frame: Frame) -> int:
+        """The location of an instruction; where the compiler has joined several, of one that ran before it."""
+        unit = frame.function.unit
+        location = frame.get_instruction().location
+        if self.places.has_line(unit, location):
+            return location
+        before = frame.function.blocks.get(frame.arrived_from)
+        earlier = [*(before.instructions if before is not None else ()), *frame.block.instructions[: frame.index]]
+        for each in reversed(earlier):
+            if self.places.has_line(unit, each.location):
+                return each.location
+        return location
 
     def _find_changed_members(self, state: State) -> tuple[list[Observable], tuple[z3.BoolRef, ...]]:
         """Members that may differ from before, and a condition under which one of them does (none, where one does in

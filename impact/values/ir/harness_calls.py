@@ -7,7 +7,7 @@ from typing import Any
 import z3
 
 from ..outcomes import InputKind, Observable, Reaction, Sent
-from .access import read_byte, read_bytes_from, read_text, require_access
+from .access import read_bytes_from, read_text, require_access
 from .executor import Call, Ended
 from .memory import MemoryObject
 from .models import model
@@ -224,6 +224,18 @@ def note_member(call: Call) -> Any:
     state.members = (*state.members, Member(name, pointer, size, dict(state.objects)))
 
 
+@model("ri_begin")
+def begin_callback(call: Call) -> Any:
+    state = call.state
+    state.has_begun = True
+    state.effects = state.logs = state.sent = ()
+
+
+@model("ri_end")
+def end_callback(call: Call) -> Any:
+    raise Ended(Reaction.IGNORED)
+
+
 @model("ri_resize")
 def resize_block(call: Call) -> Any:
     pointer, size = call.arguments
@@ -246,4 +258,3 @@ def assume_condition(call: Call) -> Any:
     call.run.assume(call.state, compare_integers("ne", call.arguments[0], 0, 32))
 
 
-__all__ = ["Reaction", "add_log", "read_byte"]

@@ -7,7 +7,7 @@ from typing import Any
 
 import z3
 
-from ..outcomes import CrashKind, InputKind
+from ..outcomes import NOWHERE, CodeLine, CrashKind, InputKind
 from .access import copy_memory, fill_memory, load, read_text, store, write_scalar
 from .exceptions import (
     DESTROY,
@@ -156,7 +156,7 @@ def throw_exception(call: Call) -> Any:
 def throw_again(call: Call) -> Any:
     if not call.state.caught:
         raise call.run.make_crash(CrashKind.EXCEPTION, "rethrown without an exception")
-    raise ThrownError(call.state.caught[-1])
+    raise ThrownError(call.state.caught[-1]._replace(place=call.run.find_place(call.state)))
 
 
 @model("__cxa_begin_catch")
@@ -360,7 +360,25 @@ def end_by_sanitizer(call: Call) -> Any:
     kind = _SANITIZED.get(name)
     if kind is None:
         raise run.make_unknown(f"check of the sanitizer: {name}")
-    raise run.make_crash(kind, "")
+    end = run.make_crash(kind, "")
+    if name == "missing_return":
+        end.place = _read_check_place(call)
+    raise end
+
+
+def _read_check_place(call: Call) -> CodeLine | None:
+    """The place that a check of the sanitizer names itself (of a function that returns nothing, its head)."""
+    run, state = call.run, call.state
+    data = call.arguments[0]
+    if not isinstance(data, Pointer):
+        return None
+    try:
+        path = read_text(run, state, load(run, state, data, POINTER))
+        line = load(run, state, Pointer(data.object, add_offsets(data.offset, 8)), _I32)
+    except Ended:
+        return None
+    place = run.places.make_place(path, line) if isinstance(line, int) else NOWHERE
+    return place if place.path else None
 
 
 @model("llvm.ubsantrap")
@@ -371,7 +389,14 @@ def end_by_trap_of_sanitizer(call: Call) -> Any:
     raise call.run.make_crash(kind, "")
 
 
-@model("llvm.trap", "llvm.debugtrap", "abort", "_ZSt7__abortv", "quick_abort", "raise")
+@model("llvm.trap")
+def end_by_trap(call: Call) -> Any:
+    # Of clang's check that an access stays in a variable (local-bounds), blocks are called `trap`.
+    is_bound = call.state.frames[-1].block.label.startswith("%trap")
+    raise call.run.make_crash(CrashKind.INDEX if is_bound else CrashKind.ABORT, "")
+
+
+@model("llvm.debugtrap", "abort", "_ZSt7__abortv", "quick_abort", "raise")
 def end_by_abort(call: Call) -> Any:
     raise call.run.make_crash(CrashKind.ABORT, "")
 

@@ -243,7 +243,7 @@ def interpret_raw(value: Any, type_: IrType, addresses: AddressMap) -> Any:
     if isinstance(value, float) or z3.is_fp(value):
         return reduce_term(make_float_bits(value, type_.size * 8))
     if isinstance(value, Pointer | Code):
-        if type_.bits == 64:
+        if type_.bits == 64 and value != NULL:
             return value
         value = addresses.compute_address(value)
     if isinstance(value, int):

@@ -35,6 +35,15 @@ class PlaceReader:
             self._known[key] = self._look_up(unit, str(location))
         return self._known[key]
 
+    def has_line(self, unit: IrUnit, location: int) -> bool:
+        """Whether a location names a line: that of instructions that were joined does not."""
+        line = _LINE.search(unit.metadata.get(str(location), "")) if location else None
+        return line is not None and line[1] != "0"
+
+    def make_place(self, path: str, line: int) -> CodeLine:
+        """A line of the workspace, or none."""
+        return CodeLine(path, line) if line and self._is_of_workspace(path) else NOWHERE
+
     def _look_up(self, unit: IrUnit, location: str) -> CodeLine:
         while location:
             text = unit.metadata.get(location, "")

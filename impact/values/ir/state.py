@@ -91,6 +91,7 @@ class State:
         self.effects: tuple[Observable, ...] = ()
         self.logs: tuple[str, ...] = ()
         self.sent: tuple[Sent, ...] = ()
+        self.has_begun = False
         self.path: tuple[str, ...] = ()
         self.sending: Sent | None = None
         self.members: tuple[Member, ...] = ()

@@ -47,21 +47,21 @@ struct Node {
     if (std::fabs(msg.angular.z) < 0.01) return;
     if (speed > limit_) speed = limit_;
     else if (speed < -limit_) speed = -limit_;
-    int32_t ticks = static_cast<int32_t>(speed * 100);
+    int32_t ticks = static_cast<int32_t>(speed * 100);  // crash: velocity FLOAT_TO_INTEGER
     pub.publish(ticks);
   }
   void onText(const Text &msg) {
     if (msg.data == "start") { enabled_ = true; pub.publish(1); }
     else if (msg.data == "stop") { enabled_ = false; pub.publish(0); }
-    else if (msg.data.substr(0, 3) == "go ") { pub.publish(std::stoi(msg.data.substr(3))); }
+    else if (msg.data.substr(0, 3) == "go ") { pub.publish(std::stoi(msg.data.substr(3))); }  // crash: text EXCEPTION
   }
   void onJoints(const Joints &msg) {
-    for (size_t i = 0; i < msg.name.size(); ++i) commands_[i] = msg.position[i];
+    for (size_t i = 0; i < msg.name.size(); ++i) commands_[i] = msg.position[i];  // crash: joints INDEX
     if (!msg.name.empty()) pub.publish(commands_[0]);
   }
   void onRate(const Rate &msg) {
     if (msg.count < 0) return;
-    rate_ = 1000 / msg.period_ms;
+    rate_ = 1000 / msg.period_ms;  // crash: rate DIVISION
     if (rate_ > 0) pub.publish(rate_ * (msg.count % 7));
   }
   bool isUnit(const Quaternion &q) {
@@ -78,7 +78,7 @@ struct Node {
     if (msg.seq <= last_seq_) return;
     last_seq_ = msg.seq;
     if (!enabled_) return;
-    assert(msg.mode < 3);
+    assert(msg.mode < 3);  // crash: command ASSERTION
     pub.publish(msg.mode);
   }
   void onScan(const Scan &msg) {
@@ -89,14 +89,14 @@ struct Node {
       if (range < msg.range_min) continue;
       if (range < best) { best = range; place = i; }
     }
-    float ahead = msg.ranges[msg.ranges.size() / 2];
+    float ahead = msg.ranges[msg.ranges.size() / 2];  // crash: scan INDEX
     if (best < 0.3f && ahead < 1.0f) pub.publish(place);
   }
   void onGrid(const Grid &msg) {
     unsigned index = 0;
     for (unsigned i = 0; i < msg.height; ++i)
       for (unsigned j = 0; j < msg.width; ++j) {
-        unsigned char value = msg.data[index];
+        unsigned char value = msg.data[index];  // crash: grid INDEX
         costs_[index & 15] = value >= 100 ? 254 : 0;
         ++index;
       }
@@ -107,18 +107,18 @@ struct Node {
 #define STATE                                                                                                          \
   MEMBER(enabled_); MEMBER(last_seq_); MEMBER(state_); MEMBER(rate_); MEMBER(commands_); MEMBER(goal_); MEMBER(costs_)
 
-HARNESS(led, LedMessage, Node, FIELD(value), STATE; node.onLed(message))
-HARNESS(mode, ModeMessage, Node, FIELD(mode), STATE; node.onMode(message))
-HARNESS(velocity, Twist, Node, FIELD(linear.x); FIELD(angular.z), STATE; node.onVelocity(message))
-HARNESS(text, Text, Node, FIELD(data), STATE; node.onText(message))
-HARNESS(joints, Joints, Node, FIELD(name); FIELD(position), STATE; node.onJoints(message))
-HARNESS(rate, Rate, Node, FIELD(period_ms); FIELD(count), STATE; node.onRate(message))
+HARNESS(led, LedMessage, Node, FIELD(value), STATE; node.onLed(message))  // also: handled, log-only
+HARNESS(mode, ModeMessage, Node, FIELD(mode), STATE; node.onMode(message))  // also: handled, ignored
+HARNESS(velocity, Twist, Node, FIELD(linear.x); FIELD(angular.z), STATE; node.onVelocity(message))  // also: handled, ignored
+HARNESS(text, Text, Node, FIELD(data), STATE; node.onText(message))  // also: handled, ignored
+HARNESS(joints, Joints, Node, FIELD(name); FIELD(position), STATE; node.onJoints(message))  // also: handled, ignored
+HARNESS(rate, Rate, Node, FIELD(period_ms); FIELD(count), STATE; node.onRate(message))  // also: handled, ignored
 HARNESS(goal, PoseStamped, Node,
         FIELD(header.frame_id); FIELD(pose.orientation.x); FIELD(pose.orientation.y); FIELD(pose.orientation.z);
         FIELD(pose.orientation.w); FIELD(pose.position.x),
-        STATE; node.onGoal(message))
+        STATE; node.onGoal(message))  // also: handled, log-only, ignored
 HARNESS(command, Command, Node, FIELD(seq); FIELD(mode),
         ri_enter("this"); fill("enabled_", node.enabled_); fill("last_seq_", node.last_seq_); ri_leave(); STATE;
-        node.onCommand(message))
-HARNESS(scan, Scan, Node, FIELD(range_min); FIELD(range_max); FIELD(ranges), STATE; node.onScan(message))
-HARNESS(grid, Grid, Node, FIELD(width); FIELD(height); FIELD(data), STATE; node.onGrid(message))
+        node.onCommand(message))  // also: handled, ignored
+HARNESS(scan, Scan, Node, FIELD(range_min); FIELD(range_max); FIELD(ranges), STATE; node.onScan(message))  // also: handled, ignored
+HARNESS(grid, Grid, Node, FIELD(width); FIELD(height); FIELD(data), STATE; node.onGrid(message))  // also: handled, ignored, unknown

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #ifndef TEXT_BOUND
@@ -18,9 +19,21 @@
 
 #define LOG_WARN(...) ri_log("warn")
 
+// A number is sent as such; of other things, that they were sent.
 struct Publisher {
   const char *name;
-  template <class M> void publish(const M &) const { ri_effect("publish", name); }
+  template <class M> void publish(const M &message) const {
+    ri_effect("publish", name);
+    if constexpr (std::is_floating_point_v<M>) {
+      ri_sent_begin(name);
+      ri_sent_float64("data", message);
+      ri_sent_end();
+    } else if constexpr (std::is_integral_v<M>) {
+      ri_sent_begin(name);
+      ri_sent_integer("data", 8 * sizeof(M), std::is_signed_v<M>, message);
+      ri_sent_end();
+    }
+  }
 };
 
 inline void fill(const char *name, uint8_t &value) { value = ri_integer(name, 8, 0); }
@@ -99,4 +112,15 @@ template <class T> void fill(const char *name, std::vector<T> &value) {
     call;                                                                                                              \
   }
 #define FIELD(field) fill(#field, message.field)
+// EXPLORE(entry, Type, filling): an entry for a function `run_<entry>(publisher, message)`.
+#define EXPLORE(entry, Type, filling)                                                                                  \
+  extern "C" void entry() {                                                                                            \
+    static Publisher pub{"pub"};                                                                                       \
+    alignas(Type) static unsigned char message_bytes[sizeof(Type)];                                                    \
+    Type &message = *new (message_bytes) Type();                                                                       \
+    ri_enter("msg");                                                                                                   \
+    filling;                                                                                                           \
+    ri_leave();                                                                                                        \
+    run_##entry(pub, message);                                                                                            \
+  }
 #define MEMBER(member) ri_member(#member, &node.member, sizeof(node.member))
