@@ -2,7 +2,7 @@
 
 import pytest
 
-from .programs import collect_outcomes, compile_program, explore_entry, needs_clang, read_expected
+from ir_programs import collect_outcomes, compile_program, explore_entry, needs_clang, read_expected
 
 PROGRAMS = ("first_callbacks", "crashes", "exceptions", "structures")
 CASES = [(name, entry) for name in PROGRAMS for entry in read_expected(name)]
