@@ -28,6 +28,7 @@ from ..outcomes import (
     Observable,
     Reaction,
     SymbolicInput,
+    UnknownFunction,
 )
 from .access import load, read_scalar, require_access, store, write_scalar
 from .exceptions import fill_standard_table, find_handler, get_raised, is_standard_exception, unwind
@@ -52,7 +53,7 @@ from .module import (
 from .places import PlaceReader
 from .ranges import Ranges
 from .reader import Program
-from .solving import Derived, Model, Solving, Undecided
+from .solving import Model, Solving, Undecided
 from .state import Frame, Raised, State, Visit
 from .terms import (
     add_offsets,
@@ -228,7 +229,7 @@ class Executor:
             self.kept.extend(arguments)
             path = f"~{what}#{len(self.solving.derived)}"
             self.solving.assumed[path] = what
-            self.solving.derived[path] = Derived(compute, tuple(arguments), bits)
+            self.solving.derived[path] = UnknownFunction(compute, tuple(arguments), bits)
             kind = InputKind.FLOAT64 if bits == 64 else InputKind.FLOAT32
             term = self.solving.make_input(path, kind, bits).term
             if state.model is not None:
@@ -568,6 +569,7 @@ class Executor:
             self._run_way(self.pending.pop())
         self._exclude_early()
         self.exploration.inputs.update(self.solving.inputs)
+        self.exploration.functions.update(self.solving.derived)
         self.exploration.instructions = self.instructions
         self.exploration.seconds = time.monotonic() - self.started
         return self.exploration

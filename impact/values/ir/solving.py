@@ -10,12 +10,12 @@ import itertools
 import math
 import random
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import z3
 
-from ..outcomes import InputKind, SymbolicInput
+from ..outcomes import InputKind, SymbolicInput, UnknownFunction
 from .terms import pack_float, read_float_value, reduce_term
 
 _FLOATS = (InputKind.FLOAT32, InputKind.FLOAT64)
@@ -41,14 +41,6 @@ class Traits(NamedTuple):
     is_slow: bool
 
 
-class Derived(NamedTuple):
-    """A variable that stands for a function of terms that z3 does not know (the sine of one)."""
-
-    compute: Callable[..., float]
-    arguments: tuple[Any, ...]
-    bits: int
-
-
 _NOTHING = Traits(frozenset(), frozenset(), False)
 Model = Mapping[str, int]
 
@@ -61,7 +53,7 @@ class Solving:
         self.inputs: dict[str, SymbolicInput] = {}
         # Variables that are no inputs, and what each stands for.
         self.assumed: dict[str, str] = {}
-        self.derived: dict[str, Derived] = {}
+        self.derived: dict[str, UnknownFunction] = {}
         self.questions = 0
         self.undecided = 0
         self._traits: dict[int, tuple[z3.ExprRef, Traits]] = {}
@@ -262,6 +254,3 @@ class Solving:
                 name: self._random.choice(pool) if self._random.random() < 0.7 else self._random.uniform(-10, 10)
                 for name in floats
             }
-
-
-__all__ = ["Derived", "Model", "Solving", "Traits", "Undecided"]
