@@ -46,6 +46,12 @@ void ri_member(const char *name, const void *start, uint64_t size) RI_NOEXCEPT;
 // The bytes of a symbolic size without a fork: whether this build fills containers by their layout (the executor) or
 // through their own functions (natively). Defined as a macro by the one who compiles: RI_SYMBOLIC.
 
+// The callback begins: what was observable before (of main and constructors), and what was logged, does not count, and
+// a crash before it is none of the callback's. Without a call, everything counts.
+void ri_begin(void) RI_NOEXCEPT;
+// The callback has returned: ends this way. What main does afterwards is none of it.
+__attribute__((noreturn)) void ri_end(void) RI_NOEXCEPT;
+
 // Nothing is known from here on: ends this way as unknown. Natively: ends the program with status 77.
 void ri_unknown(const char *what) RI_NOEXCEPT;
 // This way cannot happen in a real node.
