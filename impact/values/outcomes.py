@@ -8,6 +8,7 @@ these.
 from __future__ import annotations
 
 import enum
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -101,7 +102,9 @@ class CallbackPath:
     """One way through a callback.
 
     condition: all must hold; terms over the inputs. crash: set where result is CRASH. reason: why it is UNKNOWN.
-    assumed: what was replaced by any value on this way (havoc), by name. checked: whether a solver found an input.
+    assumed: what was replaced by any value on this way (havoc), by name. shown_by: what an input must also fulfil for
+    the effects to be seen in a replay (a member that is written differs from before); it narrows witnesses, not sets.
+    example: an input that leads here, as the executor found it (input path to bits); empty where none was found.
     """
 
     result: Reaction
@@ -114,6 +117,8 @@ class CallbackPath:
     detail: str = ""
     reason: str = ""
     assumed: tuple[str, ...] = ()
+    shown_by: tuple[z3.BoolRef, ...] = ()
+    example: Mapping[str, int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

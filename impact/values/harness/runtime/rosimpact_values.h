@@ -51,6 +51,9 @@ void ri_member(const char *name, const void *start, uint64_t size) RI_NOEXCEPT;
 void ri_begin(void) RI_NOEXCEPT;
 // The callback has returned: ends this way. What main does afterwards is none of it.
 __attribute__((noreturn)) void ri_end(void) RI_NOEXCEPT;
+// With RI_SYMBOLIC: of the block that begins at start (from operator new), only the first size bytes may be used from
+// here on. A container that is filled by its layout has room for the most elements, and as many as its size says.
+void ri_resize(void *start, uint64_t size) RI_NOEXCEPT;
 
 // Nothing is known from here on: ends this way as unknown. Natively: ends the program with status 77.
 void ri_unknown(const char *what) RI_NOEXCEPT;

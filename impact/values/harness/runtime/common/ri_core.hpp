@@ -134,9 +134,9 @@ inline void fill_text(std::string &value, const char *name) {
   uint64_t size = ri_size(name, RI_TEXT);
   char *bytes = static_cast<char *>(::operator new(RI_TEXT + 1));
   ri_characters(name, bytes, RI_TEXT);
-  bytes[size] = 0;
   auto *layout = reinterpret_cast<TextLayout *>(&value);
   layout->start = bytes; layout->size = size; layout->capacity = RI_TEXT;
+  ri_resize(bytes, size + 1);
 }
 template <class T> struct ArrayLayout { T *start, *end, *capacity; };
 template <class T> void fill_array(std::vector<T> &value, const char *name, uint64_t most) {
@@ -146,7 +146,8 @@ template <class T> void fill_array(std::vector<T> &value, const char *name, uint
   for (uint64_t at = 0; at < most; ++at) { new (start + at) T(); ri_enter_index(at); fill(start[at], ""); ri_leave(); }
   ri_leave();
   auto *layout = reinterpret_cast<ArrayLayout<T> *>(&value);
-  layout->start = start; layout->end = start + size; layout->capacity = start + most;
+  layout->start = start; layout->end = start + size; layout->capacity = start + size;
+  ri_resize(start, size * sizeof(T));
 }
 #else
 inline void fill_text(std::string &value, const char *name) {
