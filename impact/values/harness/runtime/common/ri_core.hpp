@@ -135,7 +135,7 @@ inline void fill_text(std::string &value, const char *name) {
   char *bytes = static_cast<char *>(::operator new(RI_TEXT + 1));
   ri_characters(name, bytes, RI_TEXT);
   auto *layout = reinterpret_cast<TextLayout *>(&value);
-  layout->start = bytes; layout->size = size; layout->capacity = RI_TEXT;
+  layout->start = bytes; layout->size = size; layout->capacity = size;
   ri_resize(bytes, size + 1);
 }
 template <class T> struct ArrayLayout { T *start, *end, *capacity; };
@@ -460,6 +460,51 @@ template <class T> bool find_parameter(const char *name, T &value) {
     if (found) { ri_enter("~param"); fill(value, name); ri_leave(); }
   }
   return found;
+}
+
+// ---- What harnesses make objects of.
+
+template <class T> struct PointedTo { using type = void; };
+template <class T> struct PointedTo<std::shared_ptr<T>> { using type = T; };
+
+// An argument of a constructor or of a function that subscribes.
+template <class T> T &give_argument() {
+  if constexpr (std::is_pointer<T>::value) {
+    using Inner = std::remove_cv_t<std::remove_pointer_t<T>>;
+    static T made = nullptr;
+    if constexpr (std::is_class<Inner>::value && std::is_default_constructible<Inner>::value) made = new Inner();
+    return made;
+  }
+  else if constexpr (std::is_same<T, std::string>::value) { static std::string made = "node"; return made; }
+  else if constexpr (!std::is_void<typename PointedTo<T>::type>::value) {
+    using Inner = std::remove_cv_t<typename PointedTo<T>::type>;
+    if constexpr (std::is_constructible<Inner, std::string>::value && !std::is_default_constructible<Inner>::value) {
+      static T made = std::make_shared<Inner>(std::string("node")); return made;
+    }
+    else if constexpr (std::is_default_constructible<Inner>::value) { static T made = std::make_shared<Inner>(); return made; }
+    else { static T made; return made; }
+  }
+  else if constexpr (std::is_default_constructible<T>::value) { static T made{}; return made; }
+  else if constexpr (std::is_constructible<T, std::string>::value) { static T made{std::string("node")}; return made; }
+  else { static_assert(std::is_default_constructible<T>::value, "an argument of this type is not made"); }
+}
+
+template <class B, class N, class... A> void make_base(N *node, A &&...a) {
+  if constexpr (std::is_base_of<B, N>::value) new (static_cast<void *>(static_cast<B *>(node))) B(std::forward<A>(a)...);
+}
+template <class T> void make_member(T &member) {
+  if constexpr (std::is_array<T>::value) { for (auto &one : member) make_member(one); }
+  else if constexpr (std::is_class<T>::value && std::is_default_constructible<T>::value && !std::is_const<T>::value)
+    new (static_cast<void *>(&member)) T();
+}
+template <class T, class V> void set_member(T &member, const V &value) {
+  if constexpr (!std::is_const<T>::value && !std::is_array<T>::value && std::is_assignable<T &, const V &>::value) member = value;
+}
+template <class E, class F> void run_timer(F &callback) {
+  begin();
+  if constexpr (std::is_invocable<F &>::value) callback();
+  else if constexpr (std::is_invocable<F &, const E &>::value) callback(E());
+  else ri_unknown("a timer's callback");
 }
 
 inline int64_t get_now() { return static_cast<int64_t>(ri_integer("~now", 64, 1)); }

@@ -37,7 +37,6 @@
 #define RCLCPP_DISABLE_COPY(...) __VA_ARGS__(const __VA_ARGS__ &) = delete; __VA_ARGS__ &operator=(const __VA_ARGS__ &) = delete;
 #define RCLCPP_PUBLIC
 #define RCLCPP_LOCAL
-#define RCUTILS_LOG_INFO(...) RI_LOG("info", __VA_ARGS__)
 
 typedef int rcl_ret_t;
 enum rcl_clock_type_t { RCL_CLOCK_UNINITIALIZED, RCL_ROS_TIME, RCL_SYSTEM_TIME, RCL_STEADY_TIME };
@@ -373,6 +372,17 @@ struct ParameterValue {
   explicit ParameterValue(const std::vector<float> &v) : ri_type(PARAMETER_DOUBLE_ARRAY), ri_doubles(v.begin(), v.end()) {}
   explicit ParameterValue(const std::vector<std::string> &v) : ri_type(PARAMETER_STRING_ARRAY), ri_strings(v) {}
   ParameterType get_type() const { return ri_type; }
+  template <ParameterType T> auto get() const {
+    if constexpr (T == PARAMETER_BOOL) return ri_bool;
+    else if constexpr (T == PARAMETER_INTEGER) return ri_int;
+    else if constexpr (T == PARAMETER_DOUBLE) return ri_double;
+    else if constexpr (T == PARAMETER_BYTE_ARRAY) return ri_bytes;
+    else if constexpr (T == PARAMETER_BOOL_ARRAY) return ri_bools;
+    else if constexpr (T == PARAMETER_INTEGER_ARRAY) return ri_ints;
+    else if constexpr (T == PARAMETER_DOUBLE_ARRAY) return ri_doubles;
+    else if constexpr (T == PARAMETER_STRING_ARRAY) return ri_strings;
+    else return ri_string;
+  }
   template <class T> auto get() const {
     if constexpr (std::is_same<T, bool>::value) return ri_bool;
     else if constexpr (std::is_floating_point<T>::value) return ri_double;
@@ -396,6 +406,7 @@ struct Parameter {
   const std::string &get_name() const { return ri_name; }
   const ParameterValue &get_parameter_value() const { return ri_value; }
   template <class T> auto get_value() const { return ri_value.get<T>(); }
+  template <ParameterType T> auto get_value() const { return ri_value.get<T>(); }
   bool as_bool() const { return ri_value.ri_bool; }
   int64_t as_int() const { return ri_value.ri_int; }
   double as_double() const { return ri_value.ri_double; }
@@ -580,7 +591,9 @@ class Node : public std::enable_shared_from_this<Node> {
     return ri_give<T>(ri_keep(name, ri_find_value(name, value)));
   }
   ParameterValue declare_parameter(const std::string &name) { return ri_keep(name, {}); }
-  template <class T> void declare_parameters(const std::string &space, const std::map<std::string, T> &all) { for (auto &one : all) declare_parameter(space + "." + one.first, one.second); }
+  template <class T> void declare_parameters(const std::string &space, const std::map<std::string, T> &all) {
+    for (auto &one : all) declare_parameter(space.empty() ? one.first : space + "." + one.first, one.second);
+  }
   void undeclare_parameter(const std::string &) {}
   bool has_parameter(const std::string &name) const { return ri_find(name) != nullptr; }
   Parameter get_parameter(const std::string &name) const {
@@ -773,3 +786,48 @@ namespace rmw { using ri_unused = int; }
 #define RCLCPP_FATAL_STREAM_THROTTLE(logger, k, d, args) do { (void)(logger); RI_LOG_STREAM("fatal", args); } while (0)
 #define RCLCPP_FATAL_SKIPFIRST_THROTTLE(logger, k, d, ...) do { (void)(logger); ::ri::log_all("fatal", __VA_ARGS__); } while (0)
 #define RCLCPP_FATAL_STREAM_SKIPFIRST_THROTTLE(logger, k, d, args) do { (void)(logger); RI_LOG_STREAM("fatal", args); } while (0)
+#define RCUTILS_LOG_DEBUG(...) do { ::ri::log_all("debug", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_DEBUG_NAMED(n, ...) do { ::ri::log_all("debug", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_DEBUG_ONCE(...) do { ::ri::log_all("debug", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_DEBUG_ONCE_NAMED(n, ...) do { ::ri::log_all("debug", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_DEBUG_EXPRESSION(e, ...) do { if (e) ::ri::log_all("debug", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_DEBUG_EXPRESSION_NAMED(e, n, ...) do { if (e) ::ri::log_all("debug", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_DEBUG_THROTTLE(t, d, ...) do { ::ri::log_all("debug", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_DEBUG_THROTTLE_NAMED(t, d, n, ...) do { ::ri::log_all("debug", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_DEBUG_SKIPFIRST_NAMED(n, ...) do { ::ri::log_all("debug", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_INFO(...) do { ::ri::log_all("info", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_INFO_NAMED(n, ...) do { ::ri::log_all("info", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_INFO_ONCE(...) do { ::ri::log_all("info", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_INFO_ONCE_NAMED(n, ...) do { ::ri::log_all("info", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_INFO_EXPRESSION(e, ...) do { if (e) ::ri::log_all("info", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_INFO_EXPRESSION_NAMED(e, n, ...) do { if (e) ::ri::log_all("info", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_INFO_THROTTLE(t, d, ...) do { ::ri::log_all("info", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_INFO_THROTTLE_NAMED(t, d, n, ...) do { ::ri::log_all("info", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_INFO_SKIPFIRST_NAMED(n, ...) do { ::ri::log_all("info", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_WARN(...) do { ::ri::log_all("warn", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_WARN_NAMED(n, ...) do { ::ri::log_all("warn", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_WARN_ONCE(...) do { ::ri::log_all("warn", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_WARN_ONCE_NAMED(n, ...) do { ::ri::log_all("warn", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_WARN_EXPRESSION(e, ...) do { if (e) ::ri::log_all("warn", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_WARN_EXPRESSION_NAMED(e, n, ...) do { if (e) ::ri::log_all("warn", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_WARN_THROTTLE(t, d, ...) do { ::ri::log_all("warn", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_WARN_THROTTLE_NAMED(t, d, n, ...) do { ::ri::log_all("warn", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_WARN_SKIPFIRST_NAMED(n, ...) do { ::ri::log_all("warn", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_ERROR(...) do { ::ri::log_all("error", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_ERROR_NAMED(n, ...) do { ::ri::log_all("error", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_ERROR_ONCE(...) do { ::ri::log_all("error", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_ERROR_ONCE_NAMED(n, ...) do { ::ri::log_all("error", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_ERROR_EXPRESSION(e, ...) do { if (e) ::ri::log_all("error", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_ERROR_EXPRESSION_NAMED(e, n, ...) do { if (e) ::ri::log_all("error", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_ERROR_THROTTLE(t, d, ...) do { ::ri::log_all("error", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_ERROR_THROTTLE_NAMED(t, d, n, ...) do { ::ri::log_all("error", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_ERROR_SKIPFIRST_NAMED(n, ...) do { ::ri::log_all("error", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_FATAL(...) do { ::ri::log_all("fatal", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_FATAL_NAMED(n, ...) do { ::ri::log_all("fatal", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_FATAL_ONCE(...) do { ::ri::log_all("fatal", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_FATAL_ONCE_NAMED(n, ...) do { ::ri::log_all("fatal", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_FATAL_EXPRESSION(e, ...) do { if (e) ::ri::log_all("fatal", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_FATAL_EXPRESSION_NAMED(e, n, ...) do { if (e) ::ri::log_all("fatal", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_FATAL_THROTTLE(t, d, ...) do { ::ri::log_all("fatal", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_FATAL_THROTTLE_NAMED(t, d, n, ...) do { ::ri::log_all("fatal", __VA_ARGS__); } while (0)
+#define RCUTILS_LOG_FATAL_SKIPFIRST_NAMED(n, ...) do { ::ri::log_all("fatal", __VA_ARGS__); } while (0)
