@@ -1,7 +1,7 @@
 """What an exploration says of each field: the values that are handled, ignored, only logged, that crash; and witnesses.
 
-A set is exact where the conditions of its paths speak of the field alone; else it is the least and the greatest value,
-marked as relational. All are "may" sets: for some values of the other inputs. Only the complement of what is handled
+A set is exact where the conditions of its paths speak of the field alone; else it is what lies between the least and the
+greatest value, marked as relational. All are "may" sets: for some values of the other inputs. Only the complement of what is handled
 is certain, where every way was followed to its end.
 """
 
@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 
 import z3
 
+from .ir.ranges import FloatSpan, Ranges
 from .ir.solving import Solving, Undecided
 from .ir.terms import pack_float, read_signed, unpack_float
 from .outcomes import CallbackPath, Exploration, InputKind, Reaction, SymbolicInput, Witness
@@ -33,8 +34,8 @@ Number = int | float
 @dataclass(frozen=True)
 class FieldValues:
     """Values of one field. spans: closed, in order, not touching; infinities and NaN apart. texts: for a text, where it
-    is one of a few. is_relational: least and greatest only, others may be missing between. is_complete: whether the
-    solver answered all questions; where it did not, more values may belong to it."""
+    is one of a few. is_relational: no value outside of the spans belongs to it, and some inside may not. is_complete:
+    whether the solver answered all questions; where it did not, more values may belong to it."""
 
     spans: tuple[tuple[Number, Number], ...] = ()
     infinities: tuple[float, ...] = ()
@@ -316,22 +317,16 @@ class _Search:
             return value ^ self.top if value & half else value | half
         return value ^ half if self.variable.is_signed else value
 
+    def make_bits(self, key: int) -> int:
+        """Of a float's value, from its key."""
+        half = 1 << (self.variable.bits - 1)
+        return key ^ half if key & half else key ^ self.top
+
     def read_key(self, key: int) -> Number:
         half = 1 << (self.variable.bits - 1)
         if self.variable.kind in _FLOATS:
-            return unpack_float(key ^ half if key & half else key ^ self.top, self.variable.bits)
+            return unpack_float(self.make_bits(key), self.variable.bits)
         return read_signed(key ^ half, self.variable.bits) if self.variable.is_signed else key
-
-    def _make_solver(self) -> z3.Solver:
-        solver = z3.Solver()
-        solver.set("timeout", int(max(50, min(2000, 1000 * (self.deadline - time.monotonic())))))
-        if self.variable.kind in _FLOATS:
-            # Infinities and NaN are asked for apart.
-            low, high = self._get_bounds()
-            solver.add(z3.UGE(self.key, low), z3.ULE(self.key, high))
-        elif self.variable.kind is InputKind.SIZE:
-            solver.add(z3.ULE(self.key, self.variable.most))
-        return solver
 
     def _get_bounds(self) -> tuple[int, int]:
         if self.variable.kind in _FLOATS:
@@ -340,42 +335,32 @@ class _Search:
             return self.make_key(pack_float(-largest, bits)), self.make_key(pack_float(largest, bits))
         return 0, self.variable.most if self.variable.kind is InputKind.SIZE else self.top
 
-    def _check(self, solver: z3.Solver) -> int | None:
-        """A key that a solver's conditions allow, or None."""
-        if time.monotonic() > self.deadline:
-            self.is_complete = False
-            return None
-        answer = solver.check()
-        if answer == z3.unknown:
-            self.is_complete = False
-        if answer != z3.sat:
-            return None
-        return solver.model().eval(self.key, True).as_long()  # pyright: ignore[reportAttributeAccessIssue]
-
-    def _find_end(self, solver: z3.Solver, is_least: bool, hints: Sequence[int]) -> int | None:
-        """The least or greatest key; hints are asked first."""
-        best = self._check(solver)
+    def _find_end(self, question: _Question, low: int, high: int, is_least: bool, hints: Sequence[int]) -> int | None:
+        """The least or greatest key between two that is allowed; hints are asked first."""
+        edge = low if is_least else high
+        if question.find_key(edge, edge, is_least) is not None:
+            return edge
+        best = question.find_key(low, high, is_least)
         if best is None:
             return None
-        low, high = self._get_bounds()
         low, high = (low, best) if is_least else (best, high)
         while low < high:
             inside = hints[bisect.bisect_left(hints, low) : bisect.bisect_left(hints, high)]
             middle = inside[len(inside) // 2] if inside else (low + high) // 2
             if not is_least:
                 middle = max(middle, low + 1) if inside else (low + high + 1) // 2
-            solver.push()
-            solver.add(z3.ULE(self.key, middle) if is_least else z3.UGE(self.key, middle))
-            found = self._check(solver)
-            solver.pop()
+            found = (
+                question.find_key(low, middle, True) if is_least else question.find_key(middle, high, False)
+            )
             if found is None:
-                if not self.is_complete:
-                    return low if is_least else high
+                if not question.is_complete:
+                    self.is_complete = False
+                    return best
                 low, high = (middle + 1, high) if is_least else (low, middle - 1)
             elif is_least:
-                high = found
+                best = high = found
             else:
-                low = found
+                best = low = found
         return low if is_least else high
 
     def _list_hints(self, groups: Iterable[Sequence[z3.BoolRef]]) -> list[int]:
@@ -416,6 +401,9 @@ class _Search:
         left = [each for each in left if not z3.is_true(each)]
         if not left:
             return True
+        ranges = Ranges(self.solving.inputs)
+        if any(ranges.is_impossible(each) for each in left):  # pyright: ignore[reportArgumentType]
+            return False
         try:
             return self.solving.find_model(left, {}) is not None  # pyright: ignore[reportArgumentType]
         except Undecided:
@@ -424,26 +412,29 @@ class _Search:
 
     def find_spans(self, groups: Sequence[Sequence[z3.BoolRef]]) -> FieldValues:
         """The exact set of values that some group of conditions allows; each speaks of this input alone."""
+        low, high = self._get_bounds()
+        if any(not group for group in groups):
+            is_float = self.variable.kind in _FLOATS
+            return FieldValues(
+                ((self.read_key(low), self.read_key(high)),), (-math.inf, math.inf) if is_float else (), is_float
+            )
         hints = self._list_hints(groups)
         union = z3.Or(*[z3.And(*group) for group in groups])
-        inside, outside = self._make_solver(), self._make_solver()
-        inside.add(union)
-        outside.add(z3.Not(union))
-        low, high = self._get_bounds()
+        inside, outside = _Question(self, [union], False), _Question(self, [z3.Not(union)], False)
         spans: list[tuple[int, int]] = []
         place = low
         while place <= high and len(spans) < _MOST_SPANS:
-            first = self._find_next(inside, place, hints)
+            first = self._find_end(inside, place, high, True, hints)
             if first is None:
                 break
-            after = self._find_next(outside, first, hints)
+            after = self._find_end(outside, first, high, True, hints)
             last = high if after is None else after - 1
             spans.append((first, last))
             place = last + 1
         is_relational = False
         if len(spans) == _MOST_SPANS:
             # Too many to list: from the last one on, up to the greatest.
-            greatest = self._find_end(inside, False, hints)
+            greatest = self._find_end(inside, low, high, False, hints)
             if greatest is not None and greatest > spans[-1][1]:
                 spans[-1] = (spans[-1][0], greatest)
                 is_relational = True
@@ -453,13 +444,6 @@ class _Search:
             is_relational=is_relational, is_complete=self.is_complete,
         )  # fmt: skip
 
-    def _find_next(self, solver: z3.Solver, place: int, hints: Sequence[int]) -> int | None:
-        solver.push()
-        solver.add(z3.UGE(self.key, place))
-        found = self._find_end(solver, True, hints)
-        solver.pop()
-        return found
-
     def find_extremes(self, groups: Sequence[Sequence[z3.BoolRef]], examples: Sequence[int]) -> FieldValues:
         """Least and greatest value; examples are bits that are known to be allowed."""
         low, high = self._get_bounds()
@@ -467,17 +451,14 @@ class _Search:
         hints = self._list_hints(groups)
         least, greatest = (min(keys), max(keys)) if keys else (None, None)
         for group in groups:
-            solver = self._make_solver()
-            solver.add(*group)
+            question = _Question(self, group, True)
             for is_least in (True, False):
                 known = least if is_least else greatest
-                if known is not None and known == (low if is_least else high):
+                start, end = (low, high) if known is None else (low, known - 1) if is_least else (known + 1, high)
+                if start > end:
                     continue
-                solver.push()
-                if known is not None:
-                    solver.add(z3.ULT(self.key, known) if is_least else z3.UGT(self.key, known))
-                found = self._find_end(solver, is_least, hints)
-                solver.pop()
+                found = self._find_end(question, start, end, is_least, hints)
+                self.is_complete &= question.is_complete
                 if found is not None:
                     least, greatest = (found, greatest) if is_least else (least, found)
                     least = found if least is None else least
@@ -485,6 +466,87 @@ class _Search:
         infinities, has_nan = self._find_special(groups)
         spans = ((self.read_key(least), self.read_key(greatest)),) if least is not None and greatest is not None else ()
         return FieldValues(spans, infinities, has_nan, is_relational=True, is_complete=self.is_complete)
+
+
+class _Question:
+    """Conditions of which is asked, again and again, whether they allow a key between two. Bounds answer first, then
+    trials, then the solver. is_wide: once the solver gave no answer, what bounds do not exclude is allowed."""
+
+    def __init__(self, search: _Search, conditions: Sequence[z3.BoolRef], is_wide: bool):
+        self.is_wide = is_wide
+        self._is_given_up = False
+        self.search = search
+        self.conditions = list(conditions)
+        self.is_complete = True
+        self._traits = [search.solving.find_traits(each) for each in conditions]
+        self._is_slow = any(each.is_slow for each in self._traits)
+        self._names = frozenset().union(*(each.names for each in self._traits))
+        self._solver: z3.Solver | None = None
+
+    def find_key(self, low: int, high: int, is_least: bool) -> int | None:
+        """A key from low to high that the conditions allow, or None. is_least: whether a small one is looked for."""
+        search = self.search
+        if time.monotonic() > search.deadline:
+            self.is_complete = False
+            return None
+        if search.variable.kind in _FLOATS:
+            span = FloatSpan(float(search.read_key(low)), float(search.read_key(high)), False)
+            ranges = Ranges(search.solving.inputs, {search.variable.path: span})
+            if any(ranges.is_impossible(each) for each in self.conditions):
+                return None
+            found = self._guess_key(low, high)
+            if found is not None:
+                return found
+        if not self._is_given_up:
+            found = self._solve(low, high)
+            if not self._is_given_up:
+                return found
+        return high if is_least else low
+
+    def _guess_key(self, low: int, high: int) -> int | None:
+        search = self.search
+        name, solving = search.variable.path, search.solving
+        floats = [
+            each
+            for each in self._names
+            if each != name and each not in solving.derived and solving.inputs[each].kind in _FLOATS
+        ]
+        base = dict.fromkeys(self._names, 0)
+        others = [dict.fromkeys(floats, 0.0)]
+        if floats:
+            others.append(dict.fromkeys(floats, 1.0))
+        if self._is_slow:
+            others += [{**others[0], each: step / 10} for each in floats[:2] for step in (9, 7, 5, 3, 10, 15, 20)]
+        keys = dict.fromkeys((low, high, (low + high) // 2))
+        for key in keys:
+            bits = search.make_bits(key)
+            for values in others:
+                packed = {each: pack_float(value, solving.inputs[each].bits) for each, value in values.items()}
+                trial = {**base, **packed, name: bits}
+                solving.settle(trial, self._names)
+                if solving.holds(self.conditions, trial):
+                    return key
+        return None
+
+    def _solve(self, low: int, high: int) -> int | None:
+        search = self.search
+        if self._solver is None:
+            self._solver = z3.Solver()
+            self._solver.add(*self.conditions)
+        solver = self._solver
+        limit = 0.3 if self._is_slow else 2.0
+        solver.set("timeout", int(1000 * max(0.05, min(limit, search.deadline - time.monotonic()))))
+        solver.push()
+        solver.add(z3.UGE(search.key, low), z3.ULE(search.key, high))
+        answer = solver.check()
+        found = None
+        if answer == z3.sat:
+            found = solver.model().eval(search.key, True).as_long()  # pyright: ignore[reportAttributeAccessIssue]
+        elif answer == z3.unknown:
+            self.is_complete = self.is_wide
+            self._is_given_up = self.is_wide
+        solver.pop()
+        return found
 
 
 def _list_integers(term: z3.ExprRef) -> Iterator[int]:
