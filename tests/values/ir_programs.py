@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-
 from rosimpact.impact.values.ir.explore import explore_program
 from rosimpact.impact.values.ir.reader import Program
 from rosimpact.impact.values.outcomes import Bounds, Exploration, Reaction

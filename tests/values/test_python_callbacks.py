@@ -7,11 +7,12 @@ from collections import Counter
 import pytest
 import z3
 from rosimpact.impact.facts.interface import extract
+from rosimpact.impact.values.harness.replay import is_confirmed
 from rosimpact.impact.values.outcomes import Bounds, CrashKind, Reaction, Witness
 from rosimpact.impact.values.python.explore import CallbackCode, explore_callback
 from rosimpact.impact.values.python.messages import Messages
 from rosimpact.impact.values.python.modules import ModuleCode
-from rosimpact.impact.values.python.replay import ReplayPlace, is_confirmed, replay_witness
+from rosimpact.impact.values.python.replay import ReplayPlace, replay_witness
 
 MESSAGES = {
     "std_msgs/String": "string data\n",
@@ -97,7 +98,7 @@ def explore(body, message, tmp_path, bounds=None):
         model = solver.model()
         values = {name: model.eval(one.term, True).as_long() for name, one in found.inputs.items()}
         witness = Witness(values, path.result, path.crash, path.place)
-        place = ReplayPlace(tmp_path, (tmp_path,), "driver", "Driver.callback", message)
+        place = ReplayPlace(tmp_path, (tmp_path,), "driver", "Driver.callback", message, tmp_path / "driver.py")
         replayed = replay_witness(place, witness, kinds, messages, tmp_path)
         seen[key] = is_confirmed(witness, replayed) or replayed
     return found, seen
@@ -301,7 +302,7 @@ def test_an_endless_loop_is_stopped_in_the_replay(tmp_path, monkeypatch):
     monkeypatch.setattr("rosimpact.impact.values.python.replay._SECONDS", 2.0)
     (tmp_path / "driver.py").write_text(HEAD + "    def callback(self, msg):\n        while True:\n            pass\n")
     messages = Messages({"std_msgs/Int32": extract(b"int32 data\n", "msg").sections[0]}.get, 1)
-    place = ReplayPlace(tmp_path, (tmp_path,), "driver", "Driver.callback", "std_msgs/Int32")
+    place = ReplayPlace(tmp_path, (tmp_path,), "driver", "Driver.callback", "std_msgs/Int32", tmp_path / "driver.py")
     witness = Witness({"msg.data": 1}, Reaction.CRASH, CrashKind.ENDLESS, replayed_place := ("", 0))
     seen = replay_witness(place, witness, {}, messages, tmp_path)
     assert (seen.result, seen.crash) == (Reaction.CRASH, CrashKind.ENDLESS) and replayed_place == ("", 0)
@@ -310,7 +311,7 @@ def test_an_endless_loop_is_stopped_in_the_replay(tmp_path, monkeypatch):
 def test_a_module_that_cannot_be_loaded_is_said(tmp_path):
     (tmp_path / "driver.py").write_text("import os\nraise RuntimeError('no robot')\n")
     messages = Messages({"std_msgs/Int32": extract(b"int32 data\n", "msg").sections[0]}.get, 1)
-    place = ReplayPlace(tmp_path, (tmp_path,), "driver", "Driver.callback", "std_msgs/Int32")
+    place = ReplayPlace(tmp_path, (tmp_path,), "driver", "Driver.callback", "std_msgs/Int32", tmp_path / "driver.py")
     seen = replay_witness(place, Witness({}, Reaction.HANDLED, None, ("", 0)), {}, messages, tmp_path)
-    assert seen.failure == "RuntimeError: no robot" and seen.place == ("driver.py", 2)
+    assert seen.reason == "RuntimeError: no robot" and seen.place == ("driver.py", 2)
     assert not is_confirmed(Witness({}, Reaction.HANDLED, None, ("", 0)), seen)

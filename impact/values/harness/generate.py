@@ -110,8 +110,8 @@ class HarnessWriter:
     def _run_main(self, callback: CppCallback) -> str:
         site = callback.site
         lines = self._write_prepare(callback, None)
-        lines += [f'extern "C" void ri_callback_RI_TAG() {{', *self._write_waiting(callback)]
-        lines += [f"  ri::prepare = &ri_prepare_RI_TAG_main;"]
+        lines += ['extern "C" void ri_callback_RI_TAG() {', *self._write_waiting(callback)]
+        lines += ["  ri::prepare = &ri_prepare_RI_TAG_main;"]
         call = "ri_original_main" if self._has_main(site.source.path) else ""
         if not call:
             return "\n".join([*lines, "  static_assert(false, \"no main\");", "}"])
@@ -133,10 +133,10 @@ class HarnessWriter:
         else:
             arguments = ", ".join(self._spell_argument(each) for each in types)
             lines += [f"  return new {own}({arguments});" if arguments else f"  return new {own}();", "}"]
-        lines += [f"static void ri_run_RI_TAG() {{"]
+        lines += ["static void ri_run_RI_TAG() {"]
         lines += self._write_waiting(callback)
         lines += [f"  {own} *node = ri_make_RI_TAG();"]
-        lines += [f"  ri::prepare = &ri_prepare_RI_TAG_object; ri::prepare_with = node;"]
+        lines += ["  ri::prepare = &ri_prepare_RI_TAG_object; ri::prepare_with = node;"]
         lines += [f"  {each}" for each in self._list_further(cls, callback.site, bases)]
         lines += ["  ri::deliver_or_drop();", "}"]
         lines += ["}" for _ in spaces]
@@ -203,7 +203,7 @@ class HarnessWriter:
         cls = self.reader.find_class(fn)
         spaces, own = self._split_class(cls) if cls is not None else ([], "")
         lines = [f"namespace {part} {{" for part in spaces]
-        lines += [f"static void ri_bare_RI_TAG() {{"]
+        lines += ["static void ri_bare_RI_TAG() {"]
         if cls is not None:
             members = self.reader.list_members(cls, fn)
             lines += [f"  using Node = {own};", "  alignas(Node) static unsigned char place[sizeof(Node)];"]

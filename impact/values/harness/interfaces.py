@@ -28,10 +28,7 @@ _CPP = {
 # genmsg makes a signed byte of it, and a bool a byte.
 _CPP_ROS1 = {**_CPP, "byte": "int8_t", "bool": "uint8_t"}
 _KEYWORDS = frozenset(
-    "alignas alignof and asm auto bool break case catch char class const constexpr continue default delete do double "
-    "else enum explicit export extern false float for friend goto if inline int long mutable namespace new noexcept "
-    "not nullptr operator or private protected public register return short signed sizeof static struct switch "
-    "template this throw true try typedef typename union unsigned using virtual void volatile while xor".split()
+    ["alignas", "alignof", "and", "asm", "auto", "bool", "break", "case", "catch", "char", "class", "const", "constexpr", "continue", "default", "delete", "do", "double", "else", "enum", "explicit", "export", "extern", "false", "float", "for", "friend", "goto", "if", "inline", "int", "long", "mutable", "namespace", "new", "noexcept", "not", "nullptr", "operator", "or", "private", "protected", "public", "register", "return", "short", "signed", "sizeof", "static", "struct", "switch", "template", "this", "throw", "true", "try", "typedef", "typename", "union", "unsigned", "using", "virtual", "void", "volatile", "while", "xor"]
 )
 _SECTIONS = {"request": "Request", "response": "Response", "goal": "Goal", "result": "Result", "feedback": "Feedback"}
 _HEADER_1 = re.compile(r"(\w+)/(\w+)\.h")

@@ -183,9 +183,9 @@ class Executor:
             "shufflevector": self._run_shuffle,
             "asm": self._run_assembly,
         }
-        for each in "add sub mul udiv sdiv urem srem and or xor shl lshr ashr".split():
+        for each in ["add", "sub", "mul", "udiv", "sdiv", "urem", "srem", "and", "or", "xor", "shl", "lshr", "ashr"]:
             self._handlers[each] = self._run_integer
-        for each in "fadd fsub fmul fdiv frem".split():
+        for each in ["fadd", "fsub", "fmul", "fdiv", "frem"]:
             self._handlers[each] = self._run_float
 
     # What is made.
@@ -1506,7 +1506,7 @@ def same_value(first: Any, second: Any) -> bool:
     if isinstance(first, z3.ExprRef):
         return isinstance(second, z3.ExprRef) and first.eq(second)
     if isinstance(first, float):
-        return isinstance(second, float) and (first == second and math.copysign(1, first) == math.copysign(1, second)
+        return isinstance(second, float) and ((first == second and math.copysign(1, first) == math.copysign(1, second))
                                               or (math.isnan(first) and math.isnan(second)))  # fmt: skip
     if isinstance(first, Pointer):
         return isinstance(second, Pointer) and first.object == second.object and same_value(first.offset, second.offset)

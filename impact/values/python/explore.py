@@ -24,7 +24,8 @@ _KINDS = {
 
 
 class CallbackCode(NamedTuple):
-    """Where a callback stands. name: dotted from its module on: `Driver.on_command`. message: `package/Name`."""
+    """Where a callback stands. name: dotted from its module on: `Driver.on_command`. message: `package/Name`, empty for
+    a timer."""
 
     module: ModuleCode
     name: str
@@ -89,9 +90,10 @@ def _take_way(callback: CallbackCode, run: Run, messages: Messages, find_module:
         if owner is not None:
             node = _make_node(machine, owner, function.name)
         _forget_preparation(run)
-        message = messages.make_input(run, callback.message, "msg")
         watch.start(node, function)
-        given: list[Any] = [message] if node is None else [node, message]
+        given: list[Any] = [] if node is None else [node]
+        if callback.message:
+            given.append(messages.make_input(run, callback.message, "msg"))
         machine.is_quiet = False
         machine.call_function(function, [*given, *_make_others(function, len(given))], {})
         watch.finish()

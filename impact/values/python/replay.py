@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ...facts.interface import Field, make_full_name
+from ..harness.replay import Replayed
 from ..outcomes import NOWHERE, CodeLine, CrashKind, InputKind, Observable, Reaction, Witness
 from ..sandbox import run_apart
 from .explore import find_crash_kind
@@ -22,26 +23,16 @@ _MEMORY = 2_000_000_000
 _DEEPEST = 12
 
 
-class Replayed(NamedTuple):
-    """What was seen. failure: why the callback could not be run; empty where it was."""
-
-    result: Reaction
-    crash: CrashKind | None = None
-    place: CodeLine = NOWHERE
-    detail: str = ""
-    effects: tuple[Observable, ...] = ()
-    failure: str = ""
-    is_offline: bool = False
-
-
 class ReplayPlace(NamedTuple):
-    """Where a callback is found on the disk. root: of the workspace; folders: where Python looks for its modules."""
+    """Where a callback is found on the disk. root: of the workspace; folders: where Python looks for its modules; file:
+    of the module."""
 
     root: Path
     folders: tuple[Path, ...]
     module: str
     function: str
     message: str
+    file: Path
     others: int = 0
 
 
@@ -52,7 +43,9 @@ def replay_witness(
     which it runs. Raises OSError where no process can be started."""
     task = {
         "roots": [str(place.root)], "folders": [str(one) for one in place.folders], "module": place.module,
+        "file": str(place.file),
         "function": place.function, "others": place.others,
+        "has_message": bool(place.message),
         "message": _build_message(messages, place.message, "msg", witness.values, 0),
         "members": _list_members(witness.values, kinds),
         "answers": _list_answers(witness.values, kinds),
@@ -62,29 +55,40 @@ def replay_witness(
         [sys.executable, "-I", str(_PROGRAM)], folder, text=json.dumps(task), seconds=_SECONDS, memory=_MEMORY
     )
     if ended.is_late:
-        return Replayed(Reaction.CRASH, CrashKind.ENDLESS, is_offline=ended.is_offline)
+        return Replayed(Reaction.CRASH, CrashKind.ENDLESS, is_isolated=ended.is_offline)
     try:
         found = json.loads(ended.output)
     except ValueError:
         reason = (ended.errors.strip().splitlines() or [f"it ended with status {ended.status}"])[-1]
-        return Replayed(Reaction.UNKNOWN, failure=reason[:300], is_offline=ended.is_offline)
-    return _read(found, place.root, ended.is_offline)
+        return Replayed(Reaction.UNKNOWN, reason=reason[:300], begun=False, is_isolated=ended.is_offline)
+    return _adjust(witness, _read(found, place.root)._replace(is_isolated=ended.is_offline))
 
 
-def _read(found: dict[str, Any], root: Path, is_offline: bool) -> Replayed:
+def _read(found: dict[str, Any], root: Path) -> Replayed:
     line = CodeLine(_relate(found["line"][0], root), found["line"][1])
     if found["end"] == "not loaded":
-        return Replayed(Reaction.UNKNOWN, place=line, failure=found["exception"], is_offline=is_offline)
+        return Replayed(Reaction.UNKNOWN, place=line, reason=found["exception"], begun=False)
     events = found.get("events", ())
     effects = tuple(Observable(kind, name, NOWHERE) for kind, name in events if kind != "log")
+    logs = tuple(name for kind, name in events if kind == "log")
     if found["end"] == "raised" and found["exception"] != "SystemExit":
         kind = find_crash_kind(found["exception"], found.get("detail", ""))
         detail = f"{found['exception']}: {found.get('detail', '')}".removesuffix(": ")
-        return Replayed(Reaction.CRASH, kind, line, detail, effects, is_offline=is_offline)
+        return Replayed(Reaction.CRASH, kind, line, detail, effects, logs)
     if effects or found["end"] == "raised":
-        return Replayed(Reaction.HANDLED, effects=effects, is_offline=is_offline)
-    result = Reaction.LOG_ONLY if events else Reaction.IGNORED
-    return Replayed(result, effects=effects, is_offline=is_offline)
+        return Replayed(Reaction.HANDLED, effects=effects, logs=logs)
+    return Replayed(Reaction.LOG_ONLY if logs else Reaction.IGNORED, logs=logs)
+
+
+def _adjust(witness: Witness, seen: Replayed) -> Replayed:
+    """A replay, read as the exploration means it: a member that got another value is an effect only where somebody
+    reads it, which a replay does not see."""
+    only_members = (
+        seen.result is Reaction.HANDLED and seen.effects and all(one.kind == "member" for one in seen.effects)
+    )
+    if only_members and witness.result in (Reaction.IGNORED, Reaction.LOG_ONLY):
+        return seen._replace(result=Reaction.LOG_ONLY if seen.logs else Reaction.IGNORED)
+    return seen
 
 
 def _relate(path: str, root: Path) -> str:
@@ -92,19 +96,6 @@ def _relate(path: str, root: Path) -> str:
         return Path(path).relative_to(root.resolve()).as_posix() if path else ""
     except ValueError:
         return path
-
-
-def is_confirmed(witness: Witness, replayed: Replayed) -> bool:
-    """Whether a replay did what the exploration said: the same reaction; for a crash the same kind and line. A member
-    that got another value is an effect only where somebody reads it, which a replay does not see."""
-    if replayed.failure:
-        return False
-    if witness.result is Reaction.CRASH:
-        return replayed.crash is witness.crash and replayed.place == witness.place
-    if replayed.result is witness.result:
-        return True
-    only_members = replayed.result is Reaction.HANDLED and all(one.kind == "member" for one in replayed.effects)
-    return only_members and witness.result in (Reaction.IGNORED, Reaction.LOG_ONLY)
 
 
 def _build_message(messages: Messages, type_: str, path: str, values: dict[str, int], deep: int) -> Any:

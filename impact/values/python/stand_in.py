@@ -362,6 +362,18 @@ class Finder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
         pass
 
 
+def load_module(name, file):
+    """A module by its name in a package, and else by its file, which may have no `.py`."""
+    if "." in name:
+        return importlib.import_module(name)
+    loader = importlib.machinery.SourceFileLoader(name, file)
+    module = types.ModuleType(name)
+    module.__file__ = file
+    sys.modules[name] = module
+    loader.exec_module(module)
+    return module
+
+
 def find_line(error):
     """The innermost line of the workspace that an exception came through."""
     place = ["", 0]
@@ -383,7 +395,7 @@ def main():
     sys.path[:0] = TASK["folders"]
     sys.meta_path.append(Finder())
     try:
-        module = importlib.import_module(TASK["module"])
+        module = load_module(TASK["module"], TASK["file"])
         owner = module
         parts = TASK["function"].split(".")
         for part in parts[:-1]:
@@ -408,7 +420,8 @@ def main():
         function = getattr(node, parts[-1])
     else:
         function = getattr(owner, parts[-1])
-    given.append(decode(TASK["message"]))
+    if TASK["has_message"]:
+        given.append(decode(TASK["message"]))
     given.extend(Stub(f"argument {index}") for index in range(TASK["others"]))
     EVENTS.clear()
     before = dict(vars(OWNER[0])) if OWNER else {}
