@@ -99,7 +99,7 @@ class Workshop:
                 if at.is_dir():
                     self._folders[str(at)] = None
         self._lines: dict[str, list[str]] = {}
-        self._provided: set[str] = set()
+        self._precompiled: dict[Path, bool] = {}
 
     # Headers
 
@@ -186,7 +186,8 @@ class Workshop:
             return False
         if at.parts[0] == "boost":
             return unit.boost and bool(find_facade(str(at), self.definitions.ros))
-        return len(at.parts) > 1 and not self._is_library(Path(path))
+        ours = find_facade(str(at), self.definitions.ros) or self.definitions.find_key_of_header(str(at))
+        return bool(ours) or (len(at.parts) > 1 and not self._is_library(Path(path)))
 
     def _shorten(self, path: str) -> str:
         for prefix in _SYSTEM:
@@ -287,8 +288,32 @@ class Workshop:
 
     def _check(self, unit: SourceUnit, clang: str, path: Path) -> CompilerRun:
         flags = ["-ferror-limit=0", "-fno-caret-diagnostics", "-fno-spell-checking", "-ftemplate-backtrace-limit=1"]
-        command = [clang, *self._list_flags(unit), *_IR_FLAGS, *flags, str(path), "-o", "harness.ll"]
+        base = self._list_flags(unit)
+        made = self._find_precompiled(unit, clang)
+        if made is not None:
+            base[base.index("-include"):base.index("-include")] = ["-include-pch", str(made)]
+        command = [clang, *base, *_IR_FLAGS, *flags, str(path), "-o", "harness.ll"]
         return run_compiler(command, path.parent)
+
+    def _find_precompiled(self, unit: SourceUnit, clang: str) -> Path | None:
+        """The facade, compiled once for all units that are compiled alike; None for the others."""
+        if unit.definitions or unit.stubs is None or unit.stubs.flags or unit.stubs.has_hooks or not unit.boost:
+            return None
+        made = self.folder / f"facade{unit.standard}.pch"
+        if made not in self._precompiled:
+            header = self.folder / "facade.hpp"
+            name = "rclcpp/rclcpp.hpp" if self.definitions.ros == 2 else "ros/ros.h"
+            write_file(header, f"#pragma once\n#include <{name}>\n".encode())
+            plain = SourceUnit("facade", "", standard=unit.standard, stubs=unit.stubs)
+            self._find_headers(plain, clang, header)
+            flags = self._list_flags(plain)
+            at = flags.index("-include")
+            del flags[at : at + 2]
+            flags[flags.index("c++")] = "c++-header"
+            command = [clang, *flags, *_IR_FLAGS, str(header), "-o", str(made)]
+            command = [each for each in command if each not in ("-S", "-emit-llvm")]
+            self._precompiled[made] = run_compiler(command, self.folder).status == 0
+        return made if self._precompiled[made] else None
 
     def _describe(self, error: CompileError) -> str:
         path = Path(error.path)

@@ -15,6 +15,7 @@ _BOTH: _Rows = (
     (r"message_filters/.*\.h(pp)?", "ri_filters.hpp"),
     (r"diagnostic_updater/.*\.h(pp)?", "ri_updater.hpp"),
     (r"angles/angles\.h(pp)?", "ri_angles.hpp"),
+    (r"Q[A-Z]\w+|Qt\w*/\w+|qt?[a-z]+\.h", "ri_qt.hpp"),
 )
 _ROS1: _Rows = (
     *_BOTH,

@@ -49,6 +49,11 @@ class StubTable:
     def __bool__(self) -> bool:
         return bool(self._names or self._members)
 
+    @property
+    def has_hooks(self) -> bool:
+        """Whether something is added to classes of the facades."""
+        return bool(_HOOKS & self._members.keys())
+
     def list_names(self) -> list[str]:
         """What is stood for, by its full name."""
         return sorted(f"{scope}::{name}".lstrip(":") for (scope, name), kind in self._names.items() if kind != "namespace")
@@ -209,7 +214,7 @@ class StubTable:
             return f"inline constexpr int {name} = {_make_number(full)};"
         members = " ".join(self._spell_members(full, name))
         head = "template <class... RiT> " if kind == "template" else ""
-        return f"{head}struct {name} : ri::Anything {{ using ri::Anything::Anything; {members} }};"
+        return f"{head}struct {name} : ri::Anything {{ RI_STAND_IN({name}) {members} }};"
 
     def _spell_members(self, owner: str, own: str) -> list[str]:
         rows = []
@@ -218,7 +223,7 @@ class StubTable:
                 pointed = own.rpartition("::")[2] or "ri::Anything"
                 constant = "const " if "Const" in name else ""
                 made = "std::unique_ptr" if "Unique" in name else "std::shared_ptr" if name.endswith("Ptr") else ""
-                rows.append(f"using {name} = {made}<{constant}{pointed}>;" if made else f"struct {name} : ri::Anything {{ using ri::Anything::Anything; }};")
+                rows.append(f"using {name} = {made}<{constant}{pointed}>;" if made else f"struct {name} : ri::Anything {{ RI_STAND_IN({name}) }};")
             elif kind == "function":
                 rows.append(f'template <class... RiT, class... RiA> static ri::Anything {name}(RiA &&...) {{ ri::unknown("{owner}::{name}"); return {{}}; }}')
             elif owner == "ri::Anything":

@@ -85,6 +85,18 @@ struct Anything {
 #endif
 };
 
+// What a class that stands for one of a header that is not here consists of.
+#define RI_STAND_IN(X)                                                                                      \
+  using ri::Anything::Anything;                                                                             \
+  X() {}                                                                                                    \
+  X(const X &) = default;                                                                                   \
+  X(X &&) = default;                                                                                        \
+  X &operator=(const X &) = default;                                                                        \
+  template <class RiA, class = std::enable_if_t<std::is_base_of<ri::Anything, std::decay_t<RiA>>::value &&  \
+                                                !std::is_base_of<X, std::decay_t<RiA>>::value>>             \
+  X(RiA &&) {}                                                                                              \
+  using ri::Anything::operator=;
+
 template <class T> T &make_something() {
   alignas(T) static unsigned char place[sizeof(T)];
   if constexpr (std::is_arithmetic<T>::value || std::is_pointer<T>::value || std::is_enum<T>::value)
