@@ -28,7 +28,8 @@ class ValuesAnswer(NamedTuple):
 def survey_values(
     path: Path, *, nodes: Sequence[str] = (), topics: Sequence[str] = (), callbacks: Sequence[str] = (),
     kinds: Sequence[str] = ("subscriber",), bounds: Bounds | None = None, replays: bool = False,
-    publishers: bool = True, jobs: int = 1, progress: Callable[[int, int], None] | None = None, follow_links: bool = False,
+    publishers: bool = True, jobs: int = 1, progress: Callable[[int, int], None] | None = None,
+    follow_links: bool = False,
 ) -> ValuesAnswer:  # fmt: skip
     """Explores callbacks of the workspace at a path. publishers: whether those callbacks are explored too that publish
     what these receive. The others as Survey has them. Raises CheckError and TreeError with a text for the user."""

@@ -154,14 +154,13 @@ def _render_mismatch(one: Mismatch, style: Style) -> Iterator[str]:
 
 
 def _explain(one: Mismatch) -> str:
-    may = "is" if one.sure else "may be"
     if one.kind == "crashing-value":
-        return f"`{one.field}` {may} sent as {one.values}, which crashes a subscriber"
+        return f"`{one.field}` {'is' if one.sure else 'may be'} sent as {one.values}, which crashes a subscriber"
     if one.kind == "impossible-branch":
         return f"a subscriber waits for `{one.field}` = {one.values}, which nobody sends"
-    if one.kind == "frame-mismatch":
-        return f"`{one.field}` is sent as {one.values}, a frame that a subscriber ignores"
-    return f"`{one.field}` is sent as {one.values}, which a subscriber ignores"
+    what = "ignores" if one.sure else "does not handle"
+    value = f"frame {one.values}" if one.kind == "frame-mismatch" else one.values
+    return f"`{one.field}` is sent as {value}, which a subscriber {what}"
 
 
 def _render_reasons(answer: ValuesAnswer, everything: bool, style: Style) -> Iterator[str]:

@@ -32,8 +32,8 @@ class Evaluated(NamedTuple):
 
 
 def evaluate(exploration: Exploration, names: Mapping[str, Mapping[int, str]], seconds: float = 10.0) -> Evaluated:
-    """Value sets, examples and sent values of an exploration. names: of constants, by field and value; the field ``
-    is for all. seconds: for the value sets, and again for what is sent."""
+    """Value sets, examples and sent values of an exploration. names: of constants, by type of the field and
+    value. seconds: for the value sets, and again for what is sent."""
     counts = dict(Counter(path.result for path in exploration.paths))
     unknown = dict(Counter(path.reason for path in exploration.paths if path.result is Reaction.UNKNOWN))
     assumed = tuple(sorted({name for path in exploration.paths for name in path.assumed}))
@@ -55,7 +55,8 @@ def _list_fields(exploration: Exploration, names: Mapping[str, Mapping[int, str]
     found: list[FieldSets] = []
     for one in project_fields(exploration, seconds):
         path = one.path.removeprefix("msg.")
-        known = names.get("", {}) if one.kind is InputKind.INTEGER else {}
+        sign = "int" if one.is_signed else "uint"
+        known = names.get(f"{sign}{one.bits}", {}) if one.kind is InputKind.INTEGER else {}
         found.append(FieldSets(
             path, one.kind, one.bits, one.is_signed, dict(one.values), one.surely_unhandled, one.surely_ignored, known,
         ))  # fmt: skip

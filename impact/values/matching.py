@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from ..model.flow.graph import Graph
 from .answers import CallbackAnswer, Example, FieldSets, SentField, read_number
-from .outcomes import CodeLine, Reaction
+from .outcomes import CodeLine, InputKind, Reaction
 from .projection import FieldValues, Number, format_values
 
 UNHANDLED, CRASHING, IMPOSSIBLE, FRAME = "unhandled-value", "crashing-value", "impossible-branch", "frame-mismatch"
 SEVERITIES = {CRASHING: "error", UNHANDLED: "warning", IMPOSSIBLE: "note", FRAME: "warning"}
-_INDEX = re.compile(r"\[\d+\]")
 _FRAMES = ("frame_id", "child_frame_id")
 
 
@@ -29,8 +27,9 @@ class Sender(NamedTuple):
 
 @dataclass(frozen=True)
 class Mismatch:
-    """A value that one side sends and the other does not handle. kind: of SEVERITIES. values: as text. sure: the value
-    is surely sent, and surely treated so; where it is not, both sets are only known to meet."""
+    """A value that one side sends and the other does not handle. kind: of SEVERITIES. values: as text. sure: of a
+    crash, that a replay showed it or nothing was assumed, and that the sets are exact; of a value that is not handled,
+    that nothing at all follows, not even a line in the log."""
 
     kind: str
     topic: str
@@ -52,18 +51,11 @@ def list_senders(answers: Iterable[CallbackAnswer], graph: Graph) -> dict[str, l
     found: dict[str, list[Sender]] = {}
     for answer in answers:
         for sent in answer.sent:
-            names = {
-                topic for place in sent.places for topic in topics.get((_shorten(place.path, answer), place.line), ())
-            }
+            names = {topic for place in sent.places for topic in topics.get((place.path, place.line), ())}
             if len(names) == 1:
                 row = Sender(answer.callback, sent.places, {one.path: one for one in sent.fields})
                 found.setdefault(names.pop(), []).append(row)
     return found
-
-
-def _shorten(path: str, answer: CallbackAnswer) -> str:
-    """A path of debug information as the workspace has it."""
-    return answer.path if path.endswith(f"/{answer.path}") else path
 
 
 def list_mismatches(answers: Sequence[CallbackAnswer], graph: Graph) -> list[Mismatch]:
@@ -80,10 +72,9 @@ def list_mismatches(answers: Sequence[CallbackAnswer], graph: Graph) -> list[Mis
             continue
         for topic in answer.topics:
             rows = senders.get(topic, [])
-            for sets in answer.fields:
-                if not sets.path.startswith("this."):
-                    found.extend(_compare(answer, topic, sets, rows))
-            seen = {(_shorten(place.path, answer), place.line) for row in rows for place in row.places}
+            for row in rows:
+                found.extend(_compare(answer, topic, row))
+            seen = {(place.path, place.line) for row in rows for place in row.places}
             complete = not open_names and places.get(topic, set()) <= seen and _is_only_here(graph, topic)
             if complete and rows:
                 found.extend(_list_impossible(answer, topic, rows))
@@ -94,23 +85,51 @@ def _is_only_here(graph: Graph, topic: str) -> bool:
     return not any(one.role == "publisher" and one.topic == topic and one.implied for one in graph.endpoints)
 
 
-def _compare(answer: CallbackAnswer, topic: str, sets: FieldSets, rows: Sequence[Sender]) -> Iterator[Mismatch]:
-    for row in rows:
-        sent = row.fields.get(sets.path)
-        if sent is None:
-            continue
-        crash = sets.sets.get(Reaction.CRASH)
-        met = intersect(sent.values, crash) if crash is not None else None
-        if met is not None and not met.is_empty():
-            example = _find_example(answer, sets, met)
-            if example is not None:
-                sure = not (sent.values.is_relational or crash.is_relational)
-                yield _make(CRASHING, answer, topic, sets, met, row, example, sure)
-        elif sets.ignored is not None:
-            met = intersect(sent.values, sets.ignored)
-            if not met.is_empty() and not sent.values.is_relational:
-                is_frame = sets.path.rpartition(".")[2] in _FRAMES
-                yield _make(FRAME if is_frame else UNHANDLED, answer, topic, sets, met, row, None, True)
+def _compare(answer: CallbackAnswer, topic: str, row: Sender) -> Iterator[Mismatch]:
+    """What one publisher sends that one subscriber crashes on, or does not handle."""
+    fields = [one for one in answer.fields if not one.path.startswith("this.") and one.path in row.fields]
+    for example in answer.examples:
+        if example.result is Reaction.CRASH and example.confirmed is not False and _may_be_sent(example, row):
+            crashing = [(one, _meet(row, one, one.sets.get(Reaction.CRASH))) for one in fields]
+            telling = [(one, met) for one, met in crashing if met is not None and not met.is_empty()]
+            # The field that says most is the one of which the least crashes.
+            telling.sort(key=lambda pair: (pair[1].is_relational, _measure(pair[0].sets[Reaction.CRASH])))
+            if telling:
+                one, met = telling[0]
+                sure = not met.is_relational and (example.confirmed is True or not example.assumed)
+                yield _make(CRASHING, answer, topic, one, met, row, example, sure)
+    for one in fields:
+        met = _meet(row, one, one.unhandled)
+        if met is not None and not met.is_empty() and not met.is_relational:
+            is_frame = one.path.rpartition(".")[2] in _FRAMES
+            ignored = _meet(row, one, one.ignored)
+            sure = ignored is not None and not ignored.is_empty()
+            yield _make(FRAME if is_frame else UNHANDLED, answer, topic, one, met, row, None, sure)
+
+
+def _meet(row: Sender, one: FieldSets, values: FieldValues | None) -> FieldValues | None:
+    """Values of a field that are sent and in a set."""
+    return intersect(row.fields[one.path].values, values) if values is not None else None
+
+
+def _measure(values: FieldValues) -> float:
+    """How much a set holds."""
+    if values.texts is not None:
+        return len(values.texts)
+    return sum(high - low + 1 for low, high in values.spans)
+
+
+def _may_be_sent(example: Example, row: Sender) -> bool:
+    """Whether a publisher can send each value that an example has in the fields that are known of it."""
+    for path, bits in example.values.items():
+        plain = path.removeprefix("msg.")
+        kind = example.kinds.get(path)
+        sent = row.fields.get(plain)
+        if path.startswith("msg.") and kind is not None and sent is not None and kind[0] is not InputKind.CHARACTER:
+            if sent.kind is InputKind.CHARACTER or has_value(sent.values, read_number(*kind, bits)):
+                continue
+            return False
+    return True
 
 
 def _make(
@@ -119,21 +138,6 @@ def _make(
 ) -> Mismatch:  # fmt: skip
     values = format_values(met, sets.names)
     return Mismatch(kind, topic, answer.message_type, sets.path, values, row, answer, example, sure)
-
-
-def _find_example(answer: CallbackAnswer, sets: FieldSets, met: FieldValues) -> Example | None:
-    """A confirmed crash, or one that was not tried, whose value of the field is among those that are sent. An array's
-    elements are asked one by one."""
-    for one in answer.examples:
-        if one.result is not Reaction.CRASH or one.confirmed is False or one.assumed:
-            continue
-        for path, bits in one.values.items():
-            plain = path.removeprefix("msg.")
-            kind = one.kinds.get(path)
-            is_field = kind is not None and sets.path in (plain, _INDEX.sub("[]", plain))
-            if kind is not None and is_field and has_value(met, read_number(*kind, bits)):
-                return one
-    return None
 
 
 def _list_impossible(answer: CallbackAnswer, topic: str, rows: Sequence[Sender]) -> Iterator[Mismatch]:
@@ -145,10 +149,9 @@ def _list_impossible(answer: CallbackAnswer, topic: str, rows: Sequence[Sender])
         sent = [row.fields.get(sets.path) for row in rows]
         if any(one is None or not one.is_known for one in sent):
             continue
+        known = [one.values for one in sent if one is not None]
         left = [span for span in handled.spans if span[0] == span[1] and isinstance(span[0], int)]
-        never = tuple(
-            span for span in left if not any(has_value(one.values, span[0]) for one in sent if one is not None)
-        )
+        never = tuple(span for span in left if not any(has_value(values, span[0]) for values in known))
         if never:
             yield _make(IMPOSSIBLE, answer, topic, sets, FieldValues(never), None, None, True)
         if handled.texts is not None and all(values.texts is not None for values in known):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -23,7 +24,7 @@ from .harness.interfaces import Definitions, list_constants
 from .harness.replay import Replayed, is_confirmed
 from .harness.session import HarnessSession, PreparedCallback, is_asked
 from .ir.explore import explore
-from .outcomes import Bounds, Exploration, Witness
+from .outcomes import Bounds, CodeLine, Exploration, Witness
 from .python.explore import CallbackCode, explore_callback
 from .python.messages import Messages
 from .python.modules import ModuleCode
@@ -77,7 +78,7 @@ class Survey:
             results = run_forked(_explore_target, ready, jobs, targets, self._make_messages(), self._modules)
             for done, (number, result) in enumerate(results, 1):
                 target = targets[number]
-                answer = _read_result(target.answer, result)
+                answer = _read_result(target.answer, result, self.root)
                 if replays and answer.examples:
                     answer, is_offline = self._replay(target, answer)
                     offline.append(is_offline)
@@ -220,13 +221,20 @@ def _explore_target(
     return evaluate(found, target.names)
 
 
-def _read_result(answer: CallbackAnswer, result: Evaluated | Died) -> CallbackAnswer:
+def _read_result(answer: CallbackAnswer, result: Evaluated | Died, root: Path) -> CallbackAnswer:
     if isinstance(result, Died):
         return replace(answer, reason=f"the exploration ended early: {result.why}")
+    examples = tuple(replace(one, place=_relate(one.place, root)) for one in result.examples)
+    sent = tuple(replace(one, places=tuple(_relate(place, root) for place in one.places)) for one in result.sent)
     return replace(
-        answer, counts=result.counts, fields=result.fields, examples=result.examples, sent=result.sent,
+        answer, counts=result.counts, fields=result.fields, examples=examples, sent=sent,
         unknown=result.unknown, assumed=result.assumed, left=result.left, seconds=result.seconds,
     )  # fmt: skip
+
+
+def _relate(place: CodeLine, root: Path) -> CodeLine:
+    """A line of the debug information as the workspace has it."""
+    return CodeLine(place.path.removeprefix(f"{root}/"), place.line)
 
 
 def _judge(example: Example, witness: Witness, seen: Replayed) -> Example:
@@ -240,14 +248,12 @@ def _judge(example: Example, witness: Witness, seen: Replayed) -> Example:
 
 
 def _name_constants(constants: Mapping[str, tuple[str, str]]) -> Mapping[str, Mapping[int, str]]:
-    """Names of constants by the field that they are for, as far as types say: a constant's type is its field's."""
-    found: dict[int, str] = {}
-    for name, (_, value) in constants.items():
-        try:
-            found.setdefault(int(value, 0), name)
-        except ValueError:
-            continue
-    return {"": found} if found else {}
+    """Names of constants by the type of the fields that they are for, `uint8`."""
+    found: dict[str, dict[int, str]] = {}
+    for name, (type_, value) in constants.items():
+        with suppress(ValueError):
+            found.setdefault({"byte": "int8", "char": "uint8"}.get(type_, type_), {}).setdefault(int(value, 0), name)
+    return found
 
 
 def _name_module(path: str, packages: Collection[str]) -> str:

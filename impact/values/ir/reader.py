@@ -52,7 +52,7 @@ from .module import (
 )
 
 _TOKEN = re.compile(
-    r"""\s*(c?"(?:[^"\\]|\\.)*"|[%@]"[^"]*"|[%@][-\w$.]+|![\w.]*|\#\d+|\.\.\.|-?\d+\.\d+(?:e[+-]?\d+)?"""
+    r"""\s*(c?"(?:[^"\\]|\\.)*"|[%@$]"[^"]*"|[%@$][-\w$.]+|![\w.]*|\#\d+|\.\.\.|-?\d+\.\d+(?:e[+-]?\d+)?"""
     r"""|0x[KLMHR]?[0-9A-Fa-f]+|-?\d+|[A-Za-z_][\w.$]*|[\[\]{}()<>,=*:|])"""
 )
 _HEAD = re.compile(r"^define [^\n]*?(@\"[^\"]*\"|@[-\w$.]+)\(", re.MULTILINE)
@@ -71,7 +71,7 @@ _SKIPPED = frozenset(
     ["noundef", "nonnull", "nocapture", "readonly", "writeonly", "readnone", "noalias", "signext", "zeroext", "returned", "immarg", "inreg", "nofree", "local_unnamed_addr", "unnamed_addr", "dso_local", "dso_preemptable", "internal", "private", "linkonce_odr", "linkonce", "weak", "weak_odr", "external", "extern_weak", "hidden", "protected", "default", "tail", "musttail", "notail", "fastcc", "ccc", "coldcc", "nest", "swiftself", "allocptr", "allocalign", "available_externally", "comdat", "thread_local", "appending", "common", "nuw", "nsw", "exact", "inbounds", "fast", "nnan", "ninf", "nsz", "arcp", "contract", "afn", "reassoc", "volatile", "disjoint", "nneg", "samesign", "nusw", "noext", "writable", "dead_on_unwind", "dead_on_return", "inrange", "externally_initialized", "icmp_samesign", "cxx_fast_tlscc", "swiftcc", "swifttailcc"]
 )
 _SKIPPED_WITH_VALUE = frozenset(
-    ["align", "dereferenceable", "dereferenceable_or_null", "sret", "captures", "initializes", "range", "memory", "inrange", "elementtype", "preallocated", "inalloca", "nofpclass", "addrspace", "thread_local", "vscale_range", "alignstack"]
+    ["comdat", "align", "dereferenceable", "dereferenceable_or_null", "sret", "captures", "initializes", "range", "memory", "inrange", "elementtype", "preallocated", "inalloca", "nofpclass", "addrspace", "thread_local", "vscale_range", "alignstack"]
 )
 _BINARY = frozenset(
     ["add", "sub", "mul", "udiv", "sdiv", "urem", "srem", "and", "or", "xor", "shl", "lshr", "ashr", "fadd", "fsub", "fmul", "fdiv", "frem"]
