@@ -29,6 +29,8 @@ class Evaluated(NamedTuple):
     assumed: tuple[str, ...]
     left: int
     seconds: float
+    asked: tuple[str, ...] = ()
+    """Types of messages that the callback had to do with."""
 
 
 def evaluate(exploration: Exploration, names: Mapping[str, Mapping[int, str]], seconds: float = 10.0) -> Evaluated:

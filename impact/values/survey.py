@@ -48,13 +48,14 @@ class Asked(NamedTuple):
 
 @dataclass
 class _Target:
-    """A callback that can be explored. prepared: its harness; code: of a Python one."""
+    """A callback that can be explored. prepared: its harness; code: of a Python one; types: of messages that it has to do
+    with, known once it was explored."""
 
     answer: CallbackAnswer
     names: Mapping[str, Mapping[int, str]]
     prepared: PreparedCallback | None = None
     code: CallbackCode | None = None
-    others: int = 0
+    types: tuple[str, ...] = ()
 
 
 class Survey:
@@ -79,6 +80,8 @@ class Survey:
             for done, (number, result) in enumerate(results, 1):
                 target = targets[number]
                 answer = _read_result(target.answer, result, self.root)
+                if isinstance(result, Evaluated):
+                    target.types = result.asked
                 if replays and answer.examples:
                     answer, is_offline = self._replay(target, answer)
                     offline.append(is_offline)
@@ -189,7 +192,9 @@ class Survey:
             target.answer.callback, target.answer.message_type, path,
         )  # fmt: skip
         with tempfile.TemporaryDirectory(prefix="rosimpact-replay-") as folder:
-            return replay_witness(place, witness, example.kinds, self._make_messages(), Path(folder))
+            messages = self._make_messages()
+            messages.asked.update(target.types)
+            return replay_witness(place, witness, example.kinds, messages, Path(folder))
 
 
 def _get_file(callback: CppCallback) -> str:
@@ -218,6 +223,7 @@ def _explore_target(
     else:
         assert target.code is not None
         found = explore_callback(target.code, messages, modules.get, target.answer.bounds)
+        return evaluate(found, target.names)._replace(asked=tuple(sorted(messages.asked)))
     return evaluate(found, target.names)
 
 
