@@ -240,13 +240,15 @@ class HarnessWriter:
         lines = [f"  auto call = {generic.format(call)};"]
         if callback.kind == "timer":
             event = "ros::TimerEvent" if self.ros == 1 else "ri::Info"
-            return [*lines, f"  ri::run_timer<{event}>(call);"]
+            takes = f"std::is_invocable<decltype(call) &>::value || std::is_invocable<decltype(call) &, const {event} &>::value"
+            return [*lines, f'  static_assert({takes}, "not called by a timer alone");', f"  ri::run_timer<{event}>(call);"]
         if not type_:
             return None
         if callback.kind == "service":
             holder = "ros::ServiceHolder" if self.ros == 1 else "rclcpp::RiServiceHolder"
             parts = (f"{type_}Request", f"{type_}Response") if self.ros == 1 else (f"{type_}::Request", f"{type_}::Response")
             return [*lines, f"  {holder}<{parts[0]}, {parts[1]}, decltype(call)> holder{{call}};", "  holder.run(&holder);"]
+        lines.append(f'  static_assert(ri::takes_message<{type_}, decltype(call)>, "not called with the message alone");')
         return [*lines, f'  auto made = ri::make_message<{type_}>("msg");', f"  ri::call_with<{type_}>(call, made);"]
 
 

@@ -225,7 +225,7 @@ class StubTable:
                 made = "std::unique_ptr" if "Unique" in name else "std::shared_ptr" if name.endswith("Ptr") else ""
                 rows.append(f"using {name} = {made}<{constant}{pointed}>;" if made else f"struct {name} : ri::Anything {{ RI_STAND_IN({name}) }};")
             elif kind == "function":
-                rows.append(f'template <class... RiT, class... RiA> static ri::Anything {name}(RiA &&...) {{ ri::unknown("{owner}::{name}"); return {{}}; }}')
+                rows.append(f'template <class... RiM, class... RiB> static ri::Anything {name}(RiB &&...) {{ ri::unknown("{owner}::{name}"); return {{}}; }}')
             elif owner == "ri::Anything":
                 rows.append(f"static Anything {name};")
             else:

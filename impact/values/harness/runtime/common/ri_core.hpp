@@ -412,6 +412,14 @@ template <class M> struct Event {
 
 struct Info {};
 
+// Whether a callback takes a message in one of these forms.
+template <class M, class F> inline constexpr bool takes_message =
+    std::is_invocable<F &, const std::shared_ptr<M const> &>::value || std::is_invocable<F &, const M &>::value ||
+    std::is_invocable<F &, std::shared_ptr<M>>::value || std::is_invocable<F &, std::unique_ptr<M>>::value ||
+    std::is_invocable<F &, M &>::value || std::is_invocable<F &, const Event<M> &>::value || std::is_invocable<F &>::value ||
+    std::is_invocable<F &, const std::shared_ptr<M const> &, const Info &>::value ||
+    std::is_invocable<F &, const M &, const Info &>::value;
+
 template <class M, class F> void call_with(F &callback, const std::shared_ptr<M> &made, const Info & = {}) {
   using Shared = std::shared_ptr<M>;
   using ConstShared = std::shared_ptr<M const>;
@@ -423,10 +431,13 @@ template <class M, class F> void call_with(F &callback, const std::shared_ptr<M>
   else if constexpr (std::is_invocable<F &, Shared>::value) { begin(); callback(made); }
   else if constexpr (std::is_invocable<F &, Unique>::value) { Unique own(new M(*made)); begin(); callback(std::move(own)); }
   else if constexpr (std::is_invocable<F &, M &>::value) { begin(); callback(*made); }
-  else if constexpr (std::is_invocable<F &, const ConstShared &, const Anything &>::value) {
-    ConstShared given = made; begin(); callback(given, Anything());
+  else if constexpr (std::is_invocable<F &, const Event<M> &>::value) {
+    Event<M> event{made}; begin(); callback(static_cast<const Event<M> &>(event));
   }
-  else if constexpr (std::is_invocable<F &, const M &, const Anything &>::value) { begin(); callback(*made, Anything()); }
+  else if constexpr (std::is_invocable<F &, const ConstShared &, const Info &>::value) {
+    ConstShared given = made; begin(); callback(given, Info());
+  }
+  else if constexpr (std::is_invocable<F &, const M &, const Info &>::value) { begin(); callback(*made, Info()); }
   else if constexpr (std::is_invocable<F &>::value) { begin(); callback(); }
   else { begin(); ri_unknown("a callback that takes its message in a form that is not modelled"); }
 }

@@ -247,6 +247,24 @@ struct NodeHandle {
     ri::give_callback<typename TypeOfParameter<P>::type>("subscriber", [method, self](P p) { ((*self).*method)(std::forward<P>(p)); }, ri_file, ri_line);
     return ri_made(topic);
   }
+  // With the message's type written out: subscribe<M>(topic, 1, &T::method, this).
+  template <class M, class T, class U>
+  Subscriber subscribe(const std::string &topic, uint32_t, void (T::*method)(const boost::shared_ptr<M const> &), U *object, const TransportHints & = {}, RI_HERE) {
+    T *self = object;
+    ri::give_callback<M>("subscriber", [method, self](const boost::shared_ptr<M const> &p) { (self->*method)(p); }, ri_file, ri_line);
+    return ri_made(topic);
+  }
+  template <class M, class T, class U, class = std::enable_if_t<ri::is_message<M>::value>>
+  Subscriber subscribe(const std::string &topic, uint32_t, void (T::*method)(const M &), U *object, const TransportHints & = {}, RI_HERE) {
+    T *self = object;
+    ri::give_callback<M>("subscriber", [method, self](const M &p) { (self->*method)(p); }, ri_file, ri_line);
+    return ri_made(topic);
+  }
+  template <class M, class = std::enable_if_t<ri::is_message<M>::value>>
+  Subscriber subscribe(const std::string &topic, uint32_t, void (*callback)(const boost::shared_ptr<M const> &), const TransportHints & = {}, RI_HERE) {
+    ri::give_callback<M>("subscriber", callback, ri_file, ri_line);
+    return ri_made(topic);
+  }
   template <class P>
   Subscriber subscribe(const std::string &topic, uint32_t, void (*callback)(P), const TransportHints & = {}, RI_HERE) {
     ri::give_callback<typename TypeOfParameter<P>::type>("subscriber", callback, ri_file, ri_line);

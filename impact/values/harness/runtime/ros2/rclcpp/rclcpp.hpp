@@ -217,7 +217,7 @@ struct SubscriptionOptions {
 };
 template <class A> using PublisherOptionsWithAllocator = PublisherOptions;
 template <class A> using SubscriptionOptionsWithAllocator = SubscriptionOptions;
-struct MessageInfo { bool get_from_intra_process() const { return false; } ri::Anything get_rmw_message_info() const { return {}; } };
+struct MessageInfo { MessageInfo() = default; MessageInfo(const ri::Info &) {} bool get_from_intra_process() const { return false; } ri::Anything get_rmw_message_info() const { return {}; } };
 struct SerializedMessage : ri::Anything { using ri::Anything::Anything; };
 template <class M> struct LoanedMessage {
   std::shared_ptr<M> ri_message = std::make_shared<M>();
