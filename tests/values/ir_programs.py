@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-
 from rosimpact.impact.values.ir.explore import explore_program
 from rosimpact.impact.values.ir.reader import Program
 from rosimpact.impact.values.outcomes import Bounds, Exploration, Reaction
@@ -54,7 +53,10 @@ def is_of_programs(path: str) -> bool:
     return path.startswith(str(FOLDER)) and not path.endswith("kit.h")
 
 
-def explore_entry(program: Program, entry: str, bounds: Bounds = Bounds(seconds=120)) -> Exploration:
+_PATIENT = Bounds(seconds=120)
+
+
+def explore_entry(program: Program, entry: str, bounds: Bounds = _PATIENT) -> Exploration:
     return explore_program(program, entry, bounds, is_of_programs)
 
 

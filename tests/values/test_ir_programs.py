@@ -1,7 +1,6 @@
 """The executor over LLVM IR against callbacks whose crashes and reactions are marked in their sources."""
 
 import pytest
-
 from ir_programs import collect_outcomes, compile_program, explore_entry, needs_clang, read_expected
 
 PROGRAMS = ("first_callbacks", "crashes", "exceptions", "structures")
