@@ -79,6 +79,8 @@ from .terms import (
 
 _DEEPEST = 300
 _MOST_STEPS = 3_000_000
+# Variables of libraries that have a known value: the callback runs alone.
+_KNOWN_OUTSIDE = {"__libc_single_threaded": 1}
 
 
 class Ended(Exception):
@@ -288,6 +290,8 @@ class Executor:
         kind = "outside" if is_outside else "constant" if is_constant else "global"
         memory_object = MemoryObject(max(size, 4096) if is_outside else size, kind, key, None, not is_outside)
         self.made_globals[number] = (key, memory_object)
+        if key in _KNOWN_OUTSIDE:
+            memory_object.cells[0] = (1, _KNOWN_OUTSIDE[key])
         if is_outside and is_standard_exception(key.removeprefix("_ZTV")):
             fill_standard_table(self, State(), key, memory_object)
         if variable is not None and variable.value is not None:
@@ -558,7 +562,12 @@ class Executor:
             return self.exploration
         first, *later = *(key for key in self.program.list_constructors() if self.program.has_body(key)), entry
         state.upcoming = tuple(later)
-        self._push(state, self.program.get_function(first), [], [])
+        try:
+            self._push(state, self.program.get_function(first), [], [])
+        except (ReadingError, UnknownSizeError, ValueError, LookupError) as problem:
+            unread = CallbackPath(Reaction.UNKNOWN, (), reason=f"`{first}` cannot be read: {problem}")
+            self.exploration.paths.append(unread)
+            return self.exploration
         self.pending.append(state)
         while self.pending:
             if self._is_over():

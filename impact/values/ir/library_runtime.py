@@ -471,6 +471,11 @@ def skip_call(call: Call) -> Any:
     return None
 
 
+@model("llvm.invariant.start*")
+def begin_constant(call: Call) -> Any:
+    return NULL
+
+
 @model("__cxa_atexit", "atexit", "__cxa_thread_atexit", "at_quick_exit")
 def register_end(call: Call) -> Any:
     return 0
@@ -502,6 +507,24 @@ def get_own_number(call: Call) -> Any:
 @model("pthread_once")
 def run_once(call: Call) -> Any:
     raise call.run.make_unknown("pthread_once")
+
+
+@model("_ZNSt6thread15_M_start_thread*")
+def start_thread(call: Call) -> Any:
+    note = "a thread that is started does not run"
+    if note not in call.state.assumed_notes:
+        call.state.assumed_notes = (*call.state.assumed_notes, note)
+    store(call.run, call.state, call.arguments[0], _I64, 1)
+
+
+@model("_ZNSt6thread4joinEv", "_ZNSt6thread6detachEv")
+def end_thread(call: Call) -> Any:
+    store(call.run, call.state, call.arguments[0], _I64, 0)
+
+
+@model("_ZNSt6thread20hardware_concurrencyEv")
+def count_processors(call: Call) -> Any:
+    return 2
 
 
 def make_now(call: Call, name: str) -> Any:

@@ -50,7 +50,7 @@ from .module import (
 )
 
 _TOKEN = re.compile(
-    r"""\s*(c?"(?:[^"\\]|\\.)*"|[%@]"[^"]*"|[%@][-\w$.]+|![\w.]*|\#\d+|\.\.\.|-?\d+\.\d+(?:e[+-]?\d+)?"""
+    r"""\s*(c?"(?:[^"\\]|\\.)*"|[%@$]"[^"]*"|[%@$][-\w$.]+|![\w.]*|\#\d+|\.\.\.|-?\d+\.\d+(?:e[+-]?\d+)?"""
     r"""|0x[KLMHR]?[0-9A-Fa-f]+|-?\d+|[A-Za-z_][\w.$]*|[\[\]{}()<>,=*:|])"""
 )
 _HEAD = re.compile(r"^define [^\n]*?(@\"[^\"]*\"|@[-\w$.]+)\(", re.MULTILINE)
@@ -424,7 +424,12 @@ class IrUnit:
         return function
 
     def _read_parameters(self, head: str, name: str) -> list[str]:
-        tokens = _Tokens(_PLACE.sub("", head[head.index(name + "(") + len(name) + 1 :]).rstrip("{ "), self)
+        start = head.index(name + "(") + len(name) + 1
+        depth, end = 1, start
+        while depth and end < len(head):
+            depth += (head[end] == "(") - (head[end] == ")")
+            end += 1
+        tokens = _Tokens(head[start:end], self)
         parameters: list[str] = []
         while not tokens.accept(")"):
             if tokens.accept("..."):
