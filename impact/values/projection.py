@@ -1,8 +1,8 @@
-"""What an exploration says of each field: the values that are handled, ignored, only logged, that crash; and witnesses.
+"""What an exploration says of each field: values that are handled, ignored, only logged, that crash; and witnesses.
 
-A set is exact where the conditions of its paths speak of the field alone; else it is what lies between the least and the
-greatest value, marked as relational. All are "may" sets: for some values of the other inputs. Only the complement of what is handled
-is certain, where every way was followed to its end.
+A set is exact where the conditions of its paths speak of the field alone; else it is what lies between the least and
+the greatest value, marked as relational. All are "may" sets: for some values of the other inputs. Only the complement
+of what is handled is certain, where every way was followed to its end.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import NamedTuple
 import z3
 
 from .ir.ranges import FloatSpan, Ranges
-from .ir.solving import Solving, Undecided
+from .ir.solving import SolverTimeout, Solving
 from .ir.terms import pack_float, read_signed, unpack_float
 from .outcomes import CallbackPath, Exploration, InputKind, Reaction, SymbolicInput, Witness
 
@@ -152,7 +152,7 @@ class _Projector:
     def _is_possible(self, conditions: Sequence[z3.BoolRef]) -> bool:
         try:
             return self.solving.find_model(list(conditions), {}) is not None
-        except Undecided:
+        except SolverTimeout:
             return True
 
     # Numbers.
@@ -258,7 +258,7 @@ class _Projector:
         while len(found) < most and time.monotonic() < self.deadline:
             try:
                 model = self.solving.find_model([*conditions, *excluded, z3.ULE(size, self.inputs[name].most)], {})
-            except Undecided:
+            except SolverTimeout:
                 return None
             if model is None:
                 return found
@@ -406,7 +406,7 @@ class _Search:
             return False
         try:
             return self.solving.find_model(left, {}) is not None  # pyright: ignore[reportArgumentType]
-        except Undecided:
+        except SolverTimeout:
             self.is_complete = False
             return True
 
@@ -419,8 +419,8 @@ class _Search:
                 ((self.read_key(low), self.read_key(high)),), (-math.inf, math.inf) if is_float else (), is_float
             )
         hints = self._list_hints(groups)
-        union = z3.Or(*[z3.And(*group) for group in groups])
-        inside, outside = _Question(self, [union], False), _Question(self, [z3.Not(union)], False)
+        union: z3.BoolRef = z3.Or(*[z3.And(*group) for group in groups])  # pyright: ignore[reportAssignmentType]
+        inside, outside = _Question(self, [union], False), _Question(self, [z3.Not(union)], False)  # pyright: ignore[reportArgumentType]
         spans: list[tuple[int, int]] = []
         place = low
         while place <= high and len(spans) < _MOST_SPANS:
@@ -697,7 +697,7 @@ def _solve_parts(solving: Solving, conditions: Sequence[z3.BoolRef], model: Mapp
         part = solving.select_related(left, solving.find_traits(left[0]).names) or [left[0]]
         try:
             answer = solving.find_model(part, found)
-        except Undecided:
+        except SolverTimeout:
             return None
         if answer is None:
             return None

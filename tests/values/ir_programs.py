@@ -53,7 +53,10 @@ def is_of_programs(path: str) -> bool:
     return path.startswith(str(FOLDER)) and not path.endswith("kit.h")
 
 
-def explore_entry(program: Program, entry: str, bounds: Bounds = Bounds(seconds=120)) -> Exploration:
+_PATIENT = Bounds(seconds=120)
+
+
+def explore_entry(program: Program, entry: str, bounds: Bounds = _PATIENT) -> Exploration:
     return explore_program(program, entry, bounds, is_of_programs)
 
 

@@ -6,14 +6,16 @@ them under a condition. Only addresses force a fork.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import z3
 
 from ..outcomes import CrashKind
 from .layout import IrType, get_integer_type
+from .machine import Machine
 from .memory import MemoryObject, interpret_raw, read_raw
 from .module import UNDEFINED, Code, Pointer
+from .state import State
 from .terms import (
     add_offsets,
     choose_term,
@@ -26,16 +28,12 @@ from .terms import (
     reduce_term,
 )
 
-if TYPE_CHECKING:
-    from .executor import Executor
-    from .state import State
-
 _MOST_OFFSETS = 512
 _FEW_OFFSETS = 40
 _BYTE = get_integer_type(8)
 
 
-def require_access(run: Executor, state: State, pointer: Any, size: int) -> Pointer:
+def require_access(run: Machine, state: State, pointer: Any, size: int) -> Pointer:
     """Ends the ways on which some bytes may not be used; gives the pointer for the others."""
     if not isinstance(pointer, Pointer):
         if isinstance(pointer, Code):
@@ -68,7 +66,7 @@ def require_access(run: Executor, state: State, pointer: Any, size: int) -> Poin
     return pointer
 
 
-def list_offsets(run: Executor, state: State, pointer: Pointer, size: int, alignment: int) -> list[int]:
+def list_offsets(run: Machine, state: State, pointer: Pointer, size: int, alignment: int) -> list[int]:
     """The offsets that a pointer can have, as far as they are told apart cheaply."""
     memory_object = state.objects[pointer.object]
     step = max(1, min(16, max(alignment, 1 << min(4, count_trailing_zeros(pointer.offset)))))
@@ -82,7 +80,7 @@ def list_offsets(run: Executor, state: State, pointer: Pointer, size: int, align
     return sorted(values)
 
 
-def read_scalar(run: Executor, state: State, memory_object: MemoryObject, offset: int, type_: IrType) -> Any:
+def read_scalar(run: Machine, state: State, memory_object: MemoryObject, offset: int, type_: IrType) -> Any:
     raw = read_raw(memory_object, offset, type_.size, run.addresses, run.make_any_byte)
     if raw is UNDEFINED and memory_object.kind == "outside":
         return run.make_outside(state, memory_object, type_)
@@ -92,7 +90,7 @@ def read_scalar(run: Executor, state: State, memory_object: MemoryObject, offset
         raise run.make_unknown(str(problem)) from None
 
 
-def load(run: Executor, state: State, pointer: Any, type_: IrType, alignment: int = 1) -> Any:
+def load(run: Machine, state: State, pointer: Any, type_: IrType, alignment: int = 1) -> Any:
     """A value of any type from memory."""
     if type_.is_aggregate:
         parts = []
@@ -143,7 +141,7 @@ def _join_choices(offset: Any, found: list[tuple[int, Any]], type_: IrType) -> A
     return result
 
 
-def store(run: Executor, state: State, pointer: Any, type_: IrType, value: Any, alignment: int = 1):
+def store(run: Machine, state: State, pointer: Any, type_: IrType, value: Any, alignment: int = 1):
     """Writes a value of any type."""
     if type_.is_aggregate:
         for index, part in enumerate(run.list_parts(value, type_)):
@@ -163,7 +161,7 @@ def store(run: Executor, state: State, pointer: Any, type_: IrType, value: Any, 
     if isinstance(value, Pointer | Code) or any(isinstance(each, Pointer | Code) for each in old):
         write_scalar(run, state, pointer.object, run.choose(state, pointer.offset, offsets), type_.size, value)
         return
-    memory_object = state.own_object(pointer.object)
+    memory_object = state.take_object(pointer.object)
     for offset, before in zip(offsets, old, strict=True):
         if before is UNDEFINED or value is UNDEFINED:
             changed = value
@@ -173,16 +171,16 @@ def store(run: Executor, state: State, pointer: Any, type_: IrType, value: Any, 
         memory_object.write(offset, type_.size, changed)
 
 
-def write_scalar(run: Executor, state: State, number: int, offset: int, size: int, value: Any):
+def write_scalar(run: Machine, state: State, number: int, offset: int, size: int, value: Any):
     """Writes at a place that was checked."""
-    memory_object = state.own_object(number)
+    memory_object = state.take_object(number)
     if value is UNDEFINED and not memory_object.is_zeroed:
         memory_object.clear(offset, size)
     else:
         memory_object.write(offset, size, value)
 
 
-def copy_memory(run: Executor, state: State, target: Any, source: Any, size: Any):
+def copy_memory(run: Machine, state: State, target: Any, source: Any, size: Any):
     """memcpy and memmove."""
     if isinstance(size, int):
         if size == 0:
@@ -211,7 +209,7 @@ def copy_memory(run: Executor, state: State, target: Any, source: Any, size: Any
     most = min(most, run.find_most(state, size, most))
     step = 1 << min(4, count_trailing_zeros(size))
     source_cells = _cut_cells(run, source_object, source.offset, most, step)
-    target_object = state.own_object(target.object)
+    target_object = state.take_object(target.object)
     changes = []
     for start, width, value in source_cells:
         place = target.offset + start - source.offset
@@ -238,10 +236,10 @@ def copy_memory(run: Executor, state: State, target: Any, source: Any, size: Any
             )
         changes.append((place, width, choose_term(condition, value, before, 8 * width, is_float)))
     for place, width, value in changes:
-        state.own_object(target.object).write(place, width, value)
+        state.take_object(target.object).write(place, width, value)
 
 
-def _find_live(run: Executor, state: State, pointer: Any) -> MemoryObject | None:
+def _find_live(run: Machine, state: State, pointer: Any) -> MemoryObject | None:
     if not isinstance(pointer, Pointer):
         raise run.make_unknown("an address that is calculated from inputs")
     if pointer.object == 0:
@@ -250,7 +248,7 @@ def _find_live(run: Executor, state: State, pointer: Any) -> MemoryObject | None
     return state.objects[pointer.object]
 
 
-def require_range(run: Executor, state: State, pointer: Pointer, memory_object: MemoryObject, size: Any):
+def require_range(run: Machine, state: State, pointer: Pointer, memory_object: MemoryObject, size: Any):
     """A symbolic number of bytes from a pointer on."""
     limit = make_bits(memory_object.size if memory_object.limit is None else memory_object.limit, 64)
     offset = make_bits(pointer.offset, 64)
@@ -258,7 +256,7 @@ def require_range(run: Executor, state: State, pointer: Pointer, memory_object: 
     run.require(state, reduce_term(inside), CrashKind.INDEX, "")
 
 
-def fix_pointer(run: Executor, state: State, pointer: Pointer) -> Pointer:
+def fix_pointer(run: Machine, state: State, pointer: Pointer) -> Pointer:
     """The pointer with an offset that is a number; forks."""
     if isinstance(pointer.offset, int):
         return pointer
@@ -269,7 +267,7 @@ def fix_pointer(run: Executor, state: State, pointer: Pointer) -> Pointer:
 
 
 def _cut_cells(
-    run: Executor, memory_object: MemoryObject, offset: int, size: int, step: int
+    run: Machine, memory_object: MemoryObject, offset: int, size: int, step: int
 ) -> list[tuple[int, int, Any]]:
     """Cells of a range, none of them over a border of step bytes."""
     cells = []
@@ -292,7 +290,7 @@ def _copy_cells(state: State, target: Pointer, source: Pointer, size: int):
     source_object = state.objects[source.object]
     cells = source_object.list_cells(source.offset, size)
     is_zeroed = source_object.is_zeroed
-    target_object = state.own_object(target.object)
+    target_object = state.take_object(target.object)
     target_object.clear(target.offset, size)
     shift = target.offset - source.offset
     if is_zeroed != target_object.is_zeroed:
@@ -316,13 +314,13 @@ def fill_cells(memory_object: MemoryObject, offset: int, size: int, value: Any):
         place += width
 
 
-def fill_memory(run: Executor, state: State, target: Any, value: Any, size: Any):
+def fill_memory(run: Machine, state: State, target: Any, value: Any, size: Any):
     """memset."""
     if isinstance(size, int):
         if size == 0:
             return
         target = fix_pointer(run, state, require_access(run, state, target, size))
-        memory_object = state.own_object(target.object)
+        memory_object = state.take_object(target.object)
         if isinstance(value, int) and value == 0 and target.offset == 0 and size == memory_object.size:
             memory_object.cells.clear()
             memory_object.is_zeroed = True
@@ -335,7 +333,7 @@ def fill_memory(run: Executor, state: State, target: Any, value: Any, size: Any)
         return
     require_range(run, state, target, memory_object, size)
     target = fix_pointer(run, state, target)
-    memory_object = state.own_object(target.object)
+    memory_object = state.take_object(target.object)
     most = run.find_most(state, size, memory_object.size - target.offset)
     step = 1 << min(3, count_trailing_zeros(size))
     is_zero = isinstance(value, int) and value == 0
@@ -355,13 +353,13 @@ def fill_memory(run: Executor, state: State, target: Any, value: Any, size: Any)
         )
 
 
-def read_byte(run: Executor, state: State, memory_object: MemoryObject, offset: int) -> Any:
+def read_byte(run: Machine, state: State, memory_object: MemoryObject, offset: int) -> Any:
     """A byte as a number or a term; what nobody wrote is any."""
     value = read_scalar(run, state, memory_object, offset, _BYTE)
     return run.make_any_byte(8) if value is UNDEFINED else value
 
 
-def read_bytes_from(run: Executor, state: State, pointer: Any, count: int | None = None) -> list[Any]:
+def read_bytes_from(run: Machine, state: State, pointer: Any, count: int | None = None) -> list[Any]:
     """Bytes from a pointer to the end of its object, or as many as asked for. Past a symbolic limit they are read too:
     the caller has checked what may be used."""
     pointer = require_access(run, state, pointer, 1)
@@ -383,7 +381,7 @@ def read_bytes_from(run: Executor, state: State, pointer: Any, count: int | None
     return found
 
 
-def read_text(run: Executor, state: State, pointer: Any) -> str:
+def read_text(run: Machine, state: State, pointer: Any) -> str:
     """A C string whose bytes are numbers."""
     pointer = require_access(run, state, pointer, 1)
     if not isinstance(pointer.offset, int):

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..outcomes import CodeLine, CrashKind
 from .access import load, read_text
 from .layout import POINTER, get_integer_type
+from .machine import Machine
 from .module import NULL, UNDEFINED, Code, Instruction, Pointer
-from .state import Raised
+from .state import Raised, State
 from .terms import add_offsets, read_signed
-
-if TYPE_CHECKING:
-    from .executor import Executor
-    from .state import State
 
 _CATCHES_ALL = 0x7FFF_FFFF
 # Bases of the exceptions of the standard library, whose typeinfo lies in libstdc++. By their mangled names.
@@ -78,14 +75,14 @@ def demangle_class(key: str) -> str:
     return "::".join(parts) or name
 
 
-def get_info_key(run: Executor, value: Any) -> str:
+def get_info_key(run: Machine, value: Any) -> str:
     """The key of the typeinfo that an address is of."""
     if isinstance(value, Pointer) and value.object in run.made_globals:
         return run.made_globals[value.object][0]
     return ""
 
 
-def find_upcast(run: Executor, state: State, info: str, target: str, address: Pointer) -> Pointer | None:
+def find_upcast(run: Machine, state: State, info: str, target: str, address: Pointer) -> Pointer | None:
     """The part of an object of class info that is of class target; None where that is no base of it."""
     if info == target or info.split("#")[0] == target.split("#")[0]:
         return address
@@ -104,7 +101,7 @@ def find_upcast(run: Executor, state: State, info: str, target: str, address: Po
     return None
 
 
-def _list_bases(run: Executor, state: State, info: str) -> list[tuple[str, int, bool]]:
+def _list_bases(run: Machine, state: State, info: str) -> list[tuple[str, int, bool]]:
     """Base classes: key of the typeinfo, offset (or where in the table of virtual functions it stands), whether it is a
     virtual one."""
     pointer = run.find_global(state, info)
@@ -127,17 +124,17 @@ def _list_bases(run: Executor, state: State, info: str) -> list[tuple[str, int, 
     return [("_ZTI" + standard, 0, False)] if standard else []
 
 
-def _get_type_number(run: Executor, info: str) -> int:
+def _get_type_number(run: Machine, info: str) -> int:
     numbers = run.type_numbers
     return numbers.setdefault(info.split("#")[0], len(numbers) + 1)
 
 
-def find_type_number(run: Executor, value: Any) -> int:
+def find_type_number(run: Machine, value: Any) -> int:
     """llvm.eh.typeid.for."""
     return _CATCHES_ALL if value == NULL else _get_type_number(run, get_info_key(run, value))
 
 
-def select_handler(run: Executor, state: State, landing: Instruction, raised: Raised) -> tuple[Raised, int] | None:
+def select_handler(run: Machine, state: State, landing: Instruction, raised: Raised) -> tuple[Raised, int] | None:
     """What a landing pad does with an exception: the exception as it is caught, and the selector; 0 to clean up only.
     None where it is passed over."""
     kinds, is_cleanup = landing.extra
@@ -164,7 +161,7 @@ def select_handler(run: Executor, state: State, landing: Instruction, raised: Ra
     return (raised, 0) if is_cleanup else None
 
 
-def find_handler(run: Executor, state: State, landing: Instruction, raised: Raised) -> tuple[Pointer, int]:
+def find_handler(run: Machine, state: State, landing: Instruction, raised: Raised) -> tuple[Pointer, int]:
     """The pair that a landing pad gives."""
     found = select_handler(run, state, landing, raised)
     if found is None:
@@ -173,7 +170,7 @@ def find_handler(run: Executor, state: State, landing: Instruction, raised: Rais
     return raised.address, found[1]
 
 
-def get_raised(run: Executor, state: State, address: Any) -> Raised:
+def get_raised(run: Machine, state: State, address: Any) -> Raised:
     """The exception in flight whose object lies at an address."""
     found = state.values.get(f"raised {address.object}") if isinstance(address, Pointer) else None
     if found is None:
@@ -181,7 +178,7 @@ def get_raised(run: Executor, state: State, address: Any) -> Raised:
     return found
 
 
-def unwind(run: Executor, state: State, raised: Raised):
+def unwind(run: Machine, state: State, raised: Raised):
     """Goes to the landing pad of the innermost frame that has one for an exception. Where nobody catches it, the
     program ends where it was thrown."""
     if not any(_is_caught(run, state, number, raised) for number in reversed(range(len(state.frames)))):
@@ -214,7 +211,7 @@ def _get_landing(frame: Any, label: str) -> Instruction | None:
     return next((each for each in block.instructions if each.opcode == "landingpad"), None)
 
 
-def _is_caught(run: Executor, state: State, number: int, raised: Raised) -> bool:
+def _is_caught(run: Machine, state: State, number: int, raised: Raised) -> bool:
     frame = state.frames[number]
     label = _get_unwind_label(frame)
     landing = _get_landing(frame, label) if label else None
@@ -224,7 +221,7 @@ def _is_caught(run: Executor, state: State, number: int, raised: Raised) -> bool
     return found is not None and found[1] != 0
 
 
-def describe_exception(run: Executor, state: State, raised: Raised) -> str:
+def describe_exception(run: Machine, state: State, raised: Raised) -> str:
     """`std::out_of_range: stoi`, as far as it is known."""
     name = demangle_class(raised.info)
     info = raised.info
@@ -239,7 +236,7 @@ def describe_exception(run: Executor, state: State, raised: Raised) -> str:
     return name
 
 
-def _read_message(run: Executor, state: State, address: Pointer) -> str:
+def _read_message(run: Machine, state: State, address: Pointer) -> str:
     memory_object = state.objects.get(address.object)
     if memory_object is None or not isinstance(address.offset, int):
         return ""
@@ -253,24 +250,24 @@ def _read_message(run: Executor, state: State, address: Pointer) -> str:
         return ""
 
 
-def make_standard_exception(run: Executor, state: State, mangled: str, message: Any, place: CodeLine) -> Raised:
+def make_standard_exception(run: Machine, state: State, mangled: str, message: Any, place: CodeLine) -> Raised:
     """An exception of the standard library as libstdc++ throws it. message: address of a C string, or None."""
     address = run.add_object(state, 64, "heap", "an exception", is_zeroed=True)
     fill_standard_exception(run, state, address, mangled, message)
     return Raised(address, find_standard_info(run, state, mangled), place, address)
 
 
-def find_standard_info(run: Executor, state: State, mangled: str) -> str:
+def find_standard_info(run: Machine, state: State, mangled: str) -> str:
     """Key of a typeinfo; it is made where no module names it."""
     key = "_ZTI" + mangled
     run.find_global(state, key)
     return key
 
 
-def fill_standard_exception(run: Executor, state: State, address: Pointer, mangled: str, message: Any):
+def fill_standard_exception(run: Machine, state: State, address: Pointer, mangled: str, message: Any):
     """Table of virtual functions and message of an exception, as its constructor sets them."""
     table = run.find_global(state, "_ZTV" + mangled)
-    memory_object = state.own_object(address.object)
+    memory_object = state.take_object(address.object)
     offset = address.offset
     if isinstance(table, Pointer):
         memory_object.write(offset, 8, Pointer(table.object, 16))
@@ -278,7 +275,7 @@ def fill_standard_exception(run: Executor, state: State, address: Pointer, mangl
         memory_object.write(offset + 8, 8, message)
 
 
-def fill_standard_table(run: Executor, state: State, key: str, memory_object: Any):
+def fill_standard_table(run: Machine, state: State, key: str, memory_object: Any):
     """The table of virtual functions of an exception of the standard library, which no module has."""
     info = run.find_global(state, "_ZTI" + key.removeprefix("_ZTV"))
     for place, value in ((0, 0), (8, info), (16, Code(DESTROY)), (24, Code(DESTROY)), (32, Code(WHAT))):

@@ -27,12 +27,11 @@ from ..outcomes import (
     InputKind,
     Observable,
     Reaction,
-    SymbolicInput,
     UnknownFunction,
 )
-from .access import load, read_scalar, require_access, store, write_scalar
+from .access import load, read_scalar, require_access, store
 from .exceptions import fill_standard_table, find_handler, get_raised, is_standard_exception, unwind
-from .layout import ArrayType, IrType, LayoutError, StructureType, get_integer_type
+from .layout import ArrayType, IrType, StructureType, UnknownSizeError, get_integer_type
 from .memory import AddressMap, MemoryObject, interpret_raw, read_raw
 from .module import (
     NULL,
@@ -43,17 +42,17 @@ from .module import (
     Computed,
     Function,
     GlobalName,
+    GlobalVariable,
     Instruction,
     Pointer,
     ReadingError,
-    Text,
-    Variable,
+    BytesConstant,
     Zeros,
 )
 from .places import PlaceReader
 from .ranges import Ranges
-from .reader import Program
-from .solving import Model, Solving, Undecided
+from .reader import FLOAT_OPERATIONS, INTEGER_OPERATIONS, Program
+from .solving import Model, SolverTimeout, Solving
 from .state import Frame, Raised, State, Visit
 from .terms import (
     add_offsets,
@@ -80,6 +79,8 @@ from .terms import (
 
 _DEEPEST = 300
 _MOST_STEPS = 3_000_000
+# Variables of libraries that have a known value: the callback runs alone.
+_KNOWN_OUTSIDE = {"__libc_single_threaded": 1}
 
 
 class Ended(Exception):
@@ -121,6 +122,9 @@ class Call(NamedTuple):
 
 
 CallModel = Callable[[Call], Any]
+
+# Variables of the C library that change how something is done, and not what.
+_SETTINGS = frozenset(("__libc_single_threaded",))
 
 
 class Executor:
@@ -183,10 +187,8 @@ class Executor:
             "shufflevector": self._run_shuffle,
             "asm": self._run_assembly,
         }
-        for each in ["add", "sub", "mul", "udiv", "sdiv", "urem", "srem", "and", "or", "xor", "shl", "lshr", "ashr"]:
-            self._handlers[each] = self._run_integer
-        for each in ["fadd", "fsub", "fmul", "fdiv", "frem"]:
-            self._handlers[each] = self._run_float
+        self._handlers.update(dict.fromkeys(INTEGER_OPERATIONS, self._run_integer))
+        self._handlers.update(dict.fromkeys(FLOAT_OPERATIONS, self._run_float))
 
     # What is made.
 
@@ -222,8 +224,10 @@ class Executor:
         self, state: State, what: str, compute: Callable[..., float], arguments: Sequence[Any], bits: int
     ) -> Any:
         """A float that is a function of others, which z3 does not know. The same one for the same arguments."""
-        key = what + ":" + ",".join(
-            str(each.get_id()) if isinstance(each, z3.ExprRef) else repr(each) for each in arguments
+        key = (
+            what
+            + ":"
+            + ",".join(str(each.get_id()) if isinstance(each, z3.ExprRef) else repr(each) for each in arguments)
         )
         if key not in state.values:
             self.kept.extend(arguments)
@@ -238,6 +242,8 @@ class Executor:
         return state.values[key]
 
     def make_outside(self, state: State, memory_object: MemoryObject, type_: IrType) -> Any:
+        if memory_object.name.lstrip("@") in _SETTINGS:
+            return 1
         return self.make_any_scalar(state, f"variable {memory_object.name}", type_)
 
     def add_object(self, state: State, size: int, kind: str, name: str, is_zeroed: bool = False) -> Pointer:
@@ -246,7 +252,7 @@ class Executor:
         return Pointer(number, 0)
 
     def free_object(self, state: State, number: int):
-        memory_object = state.own_object(number)
+        memory_object = state.take_object(number)
         memory_object.is_live = False
         memory_object.cells = {}
 
@@ -277,17 +283,20 @@ class Executor:
             state.objects[number] = self.made_globals[number][1]
         return Pointer(number, 0)
 
-    def _make_global(self, key: str, variable: Variable | None) -> int:
+    def _make_global(self, key: str, variable: GlobalVariable | None) -> int:
         try:
             size = variable.type.size if variable is not None else 4096
-        except (LayoutError, ReadingError):
+        except (UnknownSizeError, ReadingError):
             size = 4096
         number = self.addresses.add(max(size, 1))
         self.globals[key] = number
         is_outside = variable is None or variable.value is None
-        kind = "outside" if is_outside else "constant" if variable.is_constant else "global"
+        is_constant = variable is not None and variable.is_constant
+        kind = "outside" if is_outside else "constant" if is_constant else "global"
         memory_object = MemoryObject(max(size, 4096) if is_outside else size, kind, key, None, not is_outside)
         self.made_globals[number] = (key, memory_object)
+        if key in _KNOWN_OUTSIDE:
+            memory_object.cells[0] = (1, _KNOWN_OUTSIDE[key])
         if is_outside and is_standard_exception(key.removeprefix("_ZTV")):
             fill_standard_table(self, State(), key, memory_object)
         if variable is not None and variable.value is not None:
@@ -298,7 +307,7 @@ class Executor:
     def _write_initial(self, state: State, memory_object: MemoryObject, offset: int, type_: IrType, operand: Any):
         if isinstance(operand, Zeros) or operand is UNDEFINED:
             return
-        if isinstance(operand, Text):
+        if isinstance(operand, BytesConstant):
             for index, byte in enumerate(operand.content):
                 if byte:
                     memory_object.cells[offset + index] = (1, byte)
@@ -325,7 +334,7 @@ class Executor:
             return self._make_zeros(operand.type)
         if isinstance(operand, Composite):
             return [self.read(state, registers, each, part) for part, each in operand.parts]
-        if isinstance(operand, Text):
+        if isinstance(operand, BytesConstant):
             return list(operand.content)
         if isinstance(operand, Computed):
             return self._compute_constant(state, operand)
@@ -346,16 +355,12 @@ class Executor:
             return self.convert(name, self.read(state, {}, inner, source), source, operand.type)
         if operand.what == "icmp":
             predicate, (type_, left), (_, right) = operand.operands
-            return self.compare(
-                predicate, self.read(state, {}, left, type_), self.read(state, {}, right, type_), type_
-            )
+            return self.compare(predicate, self.read(state, {}, left, type_), self.read(state, {}, right, type_), type_)
         if operand.what == "select":
             (_, condition), (type_, first), (_, second) = operand.operands
             return self.read(state, {}, first if self.read(state, {}, condition, type_) else second, type_)
         (type_, left), (_, right) = operand.operands
-        return self.compute(
-            operand.what, self.read(state, {}, left, type_), self.read(state, {}, right, type_), type_
-        )
+        return self.compute(operand.what, self.read(state, {}, left, type_), self.read(state, {}, right, type_), type_)
 
     def list_parts(self, value: Any, type_: IrType) -> list[Any]:
         """The parts of an aggregate, also of one that is not defined."""
@@ -439,7 +444,7 @@ class Executor:
         related = self.solving.select_related(state.conditions, self.solving.find_traits(condition).names)
         try:
             return self.solving.find_model([*related, condition], state.model or {})
-        except Undecided:
+        except SolverTimeout:
             return _UNDECIDED
 
     def assume(self, state: State, condition: Any):
@@ -514,10 +519,12 @@ class Executor:
             value = self.solving.evaluate(term, model) if model is not None else None
             if not isinstance(value, int) or value in found:
                 try:
-                    model = self.solving.find_model([*conditions, *excluded], state.model or {}) if (
-                        conditions or excluded
-                    ) else {}
-                except Undecided:
+                    model = (
+                        self.solving.find_model([*conditions, *excluded], state.model or {})
+                        if (conditions or excluded)
+                        else {}
+                    )
+                except SolverTimeout:
                     return None
                 if model is None:
                     return found
@@ -558,9 +565,14 @@ class Executor:
         if not self.program.has_body(entry):
             self.exploration.paths.append(CallbackPath(Reaction.UNKNOWN, (), reason=f"there is no function `{entry}`"))
             return self.exploration
-        first, *state.upcoming = *(key for key in self.program.list_constructors() if self.program.has_body(key)), entry
-        state.upcoming = tuple(state.upcoming)
-        self._push(state, self.program.get_function(first), [], [])
+        first, *later = *(key for key in self.program.list_constructors() if self.program.has_body(key)), entry
+        state.upcoming = tuple(later)
+        try:
+            self._push(state, self.program.get_function(first), [], [])
+        except (ReadingError, UnknownSizeError, ValueError, LookupError) as problem:
+            unread = CallbackPath(Reaction.UNKNOWN, (), reason=f"`{first}` cannot be read: {problem}")
+            self.exploration.paths.append(unread)
+            return self.exploration
         self.pending.append(state)
         while self.pending:
             if self._is_over():
@@ -605,12 +617,13 @@ class Executor:
                         self._record(state, end)
                         return
         except (MemoryError, RecursionError, z3.Z3Exception, ArithmeticError, LookupError, TypeError, ValueError,
-                AttributeError, AssertionError, ReadingError, LayoutError) as problem:  # fmt: skip
+                AttributeError, AssertionError, ReadingError, UnknownSizeError) as problem:  # fmt: skip
             instruction = state.frames[-1].get_instruction() if state.frames else None
             what = instruction.opcode if instruction is not None else "the end"
             if os.environ.get("ROSIMPACT_VALUES_RAISE"):
                 raise
-            self._record(state, Ended(Reaction.UNKNOWN, reason=f"the executor failed on `{what}`: {type(problem).__name__}: {problem}"))
+            reason = f"the executor failed on `{what}`: {type(problem).__name__}: {problem}"
+            self._record(state, Ended(Reaction.UNKNOWN, reason=reason))
 
     def _go_on(self, state: State, end: Ended) -> bool:
         """Whether another function runs after one that ended: what initializes variables may fail."""
@@ -676,9 +689,7 @@ class Executor:
         source = frame.block
         if block.phis:
             registers = frame.registers
-            values = [
-                self.read(state, registers, phi.extra[source.label], phi.type) for phi in block.phis
-            ]
+            values = [self.read(state, registers, phi.extra[source.label], phi.type) for phi in block.phis]
             for phi, value in zip(block.phis, values, strict=True):
                 registers[phi.result] = value
         is_backward = block.number <= source.number
@@ -729,7 +740,7 @@ class Executor:
         conditions: list[Any] = []
         for phi in frame.block.phis:
             before, now = saved.registers[phi.result], frame.registers[phi.result]
-            if same_value(before, now):
+            if is_same_value(before, now):
                 continue
             if phi.type.is_pointer or phi.type.is_aggregate or before is UNDEFINED or now is UNDEFINED:
                 return 0
@@ -783,9 +794,7 @@ class Executor:
             elif not model and conditions:
                 return
         names = frozenset().union(*(self.solving.find_traits(each).names for each in (*conditions, *shown)))
-        assumed = dict.fromkeys(
-            self.solving.assumed[name] for name in sorted(names) if name in self.solving.assumed
-        )
+        assumed = dict.fromkeys(self.solving.assumed[name] for name in sorted(names) if name in self.solving.assumed)
         assumed.update(dict.fromkeys((*state.notes, *state.assumed_notes)))
         if not state.has_begun:
             self.early.append(len(self.exploration.paths))
@@ -796,11 +805,11 @@ class Executor:
             CallbackPath(
                 result, conditions, effects, state.logs, state.sent,
                 end.crash if result is Reaction.CRASH else None, place, end.detail, reason, tuple(assumed), shown,
-                {} if model is None else self._complete_model(model),
+                {} if model is None else self._fill_model(model),
             )
         )  # fmt: skip
 
-    def _complete_model(self, model: Model) -> dict[str, int]:
+    def _fill_model(self, model: Model) -> dict[str, int]:
         return {path: model.get(path, 0) for path in self.solving.inputs}
 
     def _find_whole_model(self, conditions: Sequence[z3.BoolRef]) -> dict[str, int] | None:
@@ -811,7 +820,7 @@ class Executor:
             part = self.solving.select_related(left, self.solving.find_traits(left[0]).names) or [left[0]]
             try:
                 found = self.solving.find_model(part, model)
-            except Undecided:
+            except SolverTimeout:
                 return None
             if found is None:
                 return {}
@@ -899,22 +908,23 @@ class Executor:
 
     def _compare_range(self, before: MemoryObject, now: MemoryObject, offset: int, size: int) -> Any:
         end = min(offset + size, max(before.size, now.size))
-        places = sorted(
-            {each for cells in (before.cells, now.cells) for each in cells if offset - 16 < each < end}
-        )
+        places = sorted({each for cells in (before.cells, now.cells) for each in cells if offset - 16 < each < end})
         differences: list[Any] = []
         for place in places:
             first, second = before.cells.get(place), now.cells.get(place)
-            if first is not None and second is not None and first[0] == second[0] and same_value(first[1], second[1]):
+            if (
+                first is not None
+                and second is not None
+                and first[0] == second[0]
+                and is_same_value(first[1], second[1])
+            ):
                 continue
             start = max(place, offset)
             width = min(place + max(each[0] for each in (first, second) if each is not None), end) - start
             if width <= 0:
                 continue
-            old, new = (
-                read_raw(each, start, width, self.addresses, self.make_any_byte) for each in (before, now)
-            )
-            if new is UNDEFINED or same_value(old, new):
+            old, new = (read_raw(each, start, width, self.addresses, self.make_any_byte) for each in (before, now))
+            if new is UNDEFINED or is_same_value(old, new):
                 continue
             if old is UNDEFINED or isinstance(old, Pointer | Code | tuple) or isinstance(new, Pointer | Code | tuple):
                 return 1
@@ -949,16 +959,16 @@ class Executor:
                     return compute_integer("sub", left.offset, right.offset, 64)
             elif operation == "add" and not (isinstance(left, Pointer) and isinstance(right, Pointer)):
                 pointer, other = (left, right) if isinstance(left, Pointer) else (right, left)
-                return Pointer(pointer.object, add_offsets(pointer.offset, self._plain(other)))
+                return Pointer(pointer.object, add_offsets(pointer.offset, self._make_plain(other)))
             elif operation == "sub" and isinstance(left, Pointer):
-                return Pointer(left.object, compute_integer("sub", left.offset, self._plain(right), 64))
+                return Pointer(left.object, compute_integer("sub", left.offset, self._make_plain(right), 64))
             elif operation == "and" and isinstance(right, int) and right >> 63 and isinstance(left, Pointer):
                 # An address is rounded down.
-                kept = compute_integer("and", self._plain(left), right, 64)
+                kept = compute_integer("and", self._make_plain(left), right, 64)
                 return Pointer(left.object, compute_integer("sub", kept, self.addresses.get_base(left.object), 64))
-        return compute_integer(operation, self._plain(left), self._plain(right), type_.bits)
+        return compute_integer(operation, self._make_plain(left), self._make_plain(right), type_.bits)
 
-    def _plain(self, value: Any) -> Any:
+    def _make_plain(self, value: Any) -> Any:
         return self.addresses.compute_address(value) if isinstance(value, Pointer | Code) else value
 
     def _run_integer(self, state: State, frame: Frame, instruction: Instruction):
@@ -979,7 +989,7 @@ class Executor:
     def _compute_lane(self, state: State, operation: str, left: Any, right: Any, type_: IrType) -> Any:
         left, right = self.define(state, left, type_), self.define(state, right, type_)
         if operation in ("udiv", "sdiv", "urem", "srem"):
-            right = self._plain(right)
+            right = self._make_plain(right)
             self.require(state, compare_integers("ne", right, 0, type_.bits), CrashKind.DIVISION, "")
         return self.compute(operation, left, right, type_)
 
@@ -1036,11 +1046,9 @@ class Executor:
             if isinstance(left, Pointer) and isinstance(right, Pointer) and left.object != right.object:
                 if predicate in ("eq", "ne") and self._lies_inside(left) and self._lies_inside(right):
                     return int(predicate == "ne")
-            elif (
-                isinstance(left, Pointer) and isinstance(right, Pointer) and predicate in ("eq", "ne")
-            ):
+            elif isinstance(left, Pointer) and isinstance(right, Pointer) and predicate in ("eq", "ne"):
                 return compare_integers(predicate, left.offset, right.offset, 64)
-            left, right = self._plain(left), self._plain(right)
+            left, right = self._make_plain(left), self._make_plain(right)
         return compare_integers(predicate, left, right, type_.bits)
 
     def _lies_inside(self, pointer: Pointer) -> bool:
@@ -1096,7 +1104,7 @@ class Executor:
                 return value
             return interpret_raw(value, target, self.addresses)
         if name in ("zext", "sext", "trunc"):
-            return self._convert_integer(name, self._plain(value), source.bits, target.bits)
+            return self._convert_integer(name, self._make_plain(value), source.bits, target.bits)
         if name in ("fpext", "fptrunc"):
             if not (source.is_float and target.is_float):
                 raise self.make_unknown("floats of 80 bits")
@@ -1108,7 +1116,10 @@ class Executor:
         if not target.is_float:
             raise self.make_unknown("floats of 80 bits")
         return convert_integer_to_float(
-            self._plain(value), source.bits, target, name == "sitofp"  # pyright: ignore[reportArgumentType]
+            self._make_plain(value),
+            source.bits,
+            target,  # pyright: ignore[reportArgumentType]
+            name == "sitofp",
         )
 
     def _convert_address(self, name: str, value: Any, target: IrType) -> Any:
@@ -1118,7 +1129,7 @@ class Executor:
             if is_term(value):
                 raise self.make_unknown("an address that is calculated from inputs")
         elif name == "ptrtoint" and target.bits != 64:
-            return self._convert_integer("trunc", self._plain(value), 64, target.bits)
+            return self._convert_integer("trunc", self._make_plain(value), 64, target.bits)
         elif name == "ptrtoint" and value == NULL:
             return 0
         return value
@@ -1199,15 +1210,15 @@ class Executor:
         if operation == "xchg":
             after = operand
         elif operation in ("add", "sub", "and", "or", "xor"):
-            after = self.compute(operation, self.define(state, before, type_), self.define(state, operand, type_), type_)
+            after = self.compute(
+                operation, self.define(state, before, type_), self.define(state, operand, type_), type_
+            )
         elif operation in ("fadd", "fsub"):
             after = compute_float(operation, self.define(state, before, type_), operand, type_.bits)
         elif operation in ("max", "min", "umax", "umin"):
             predicate = ("u" if operation[0] == "u" else "s") + ("gt" if operation.endswith("max") else "lt")
             before = self.define(state, before, type_)
-            after = choose_term(
-                self.compare(predicate, before, operand, type_), before, operand, type_.bits, False
-            )
+            after = choose_term(self.compare(predicate, before, operand, type_), before, operand, type_.bits, False)
         else:
             raise self.make_unknown(f"atomic operation {operation}")
         store(self, state, address, type_, after, type_.size)
@@ -1216,9 +1227,7 @@ class Executor:
 
     def _run_compare_exchange(self, state: State, frame: Frame, instruction: Instruction):
         type_ = instruction.type
-        address, expected, new = (
-            self.read(state, frame.registers, each, type_) for each in instruction.operands
-        )
+        address, expected, new = (self.read(state, frame.registers, each, type_) for each in instruction.operands)
         before = self.define(state, load(self, state, address, type_, type_.size), type_)
         same = self.compare("eq", before, self.define(state, expected, type_), type_)
         is_same = self.decide(state, same)
@@ -1237,13 +1246,13 @@ class Executor:
         offset, current = base.offset, source
         for number, (type_, index) in enumerate(zip(types, indices, strict=True)):
             if number == 0:
-                offset = add_offsets(offset, scale_index(self._plain(index), type_.bits, source.size))
+                offset = add_offsets(offset, scale_index(self._make_plain(index), type_.bits, source.size))
             elif isinstance(current, StructureType):
                 place, current = current.locate(index)
                 offset = add_offsets(offset, place)
             elif isinstance(current, ArrayType):
                 current = current.element
-                offset = add_offsets(offset, scale_index(self._plain(index), type_.bits, current.size))
+                offset = add_offsets(offset, scale_index(self._make_plain(index), type_.bits, current.size))
             else:
                 raise self.make_unknown("an index into a scalar")
         return Pointer(base.object, offset)
@@ -1271,7 +1280,9 @@ class Executor:
 
     def _run_switch(self, state: State, frame: Frame, instruction: Instruction):
         type_ = instruction.type
-        value = self._plain(self.define(state, self.read(state, frame.registers, instruction.operands[0], type_), type_))
+        value = self._make_plain(
+            self.define(state, self.read(state, frame.registers, instruction.operands[0], type_), type_)
+        )
         default, cases = instruction.extra
         label = default
         if isinstance(value, int):
@@ -1301,7 +1312,9 @@ class Executor:
             element = type_.element  # pyright: ignore[reportAttributeAccessIssue]
             value: Any = [
                 choose_term(each, a, b, element.bits, element.is_float)
-                for each, a, b in zip(condition, self.list_parts(first, type_), self.list_parts(second, type_), strict=True)
+                for each, a, b in zip(
+                    condition, self.list_parts(first, type_), self.list_parts(second, type_), strict=True
+                )
             ]
         else:
             value = self.choose_value(state, self.define(state, condition, bit), first, second, type_)
@@ -1313,7 +1326,7 @@ class Executor:
         """first or second; forks only for addresses of different objects."""
         if isinstance(condition, int):
             return first if condition else second
-        if same_value(first, second):
+        if is_same_value(first, second):
             return first
         if first is UNDEFINED or second is UNDEFINED:
             if type_.is_pointer or type_.is_aggregate:
@@ -1321,7 +1334,12 @@ class Executor:
             first, second = self.define(state, first, type_), self.define(state, second, type_)
         if isinstance(first, Pointer) and isinstance(second, Pointer) and first.object == second.object:
             return Pointer(first.object, choose_term(condition, first.offset, second.offset, 64, False))
-        if type_.is_pointer or type_.is_aggregate or isinstance(first, Pointer | Code) or isinstance(second, Pointer | Code):
+        if (
+            type_.is_pointer
+            or type_.is_aggregate
+            or isinstance(first, Pointer | Code)
+            or isinstance(second, Pointer | Code)
+        ):
             return first if self.decide(state, condition) else second
         return choose_term(condition, first, second, type_.bits, type_.is_float)
 
@@ -1378,9 +1396,7 @@ class Executor:
             indices: list[Any] = [0] * len(mask.type.list_parts())  # pyright: ignore[reportAttributeAccessIssue]
         else:
             indices = [each for _, each in mask.parts]
-        frame.registers[instruction.result] = [
-            UNDEFINED if each is UNDEFINED else lanes[each] for each in indices
-        ]
+        frame.registers[instruction.result] = [UNDEFINED if each is UNDEFINED else lanes[each] for each in indices]
         frame.index += 1
 
     def _run_unreachable(self, state: State, frame: Frame, instruction: Instruction):
@@ -1473,7 +1489,7 @@ class Executor:
             if isinstance(value, Pointer) and value.object in state.objects:
                 memory_object = state.objects[value.object]
                 if memory_object.is_live and memory_object.kind not in ("constant", "outside"):
-                    memory_object = state.own_object(value.object)
+                    memory_object = state.take_object(value.object)
                     memory_object.cells = {}
                     memory_object.is_zeroed = False
         if instruction.type.size == 0:
@@ -1499,7 +1515,7 @@ class Executor:
 _UNDECIDED: Any = object()
 
 
-def same_value(first: Any, second: Any) -> bool:
+def is_same_value(first: Any, second: Any) -> bool:
     """Whether two values are written alike."""
     if first is second:
         return True
@@ -1509,11 +1525,13 @@ def same_value(first: Any, second: Any) -> bool:
         return isinstance(second, float) and ((first == second and math.copysign(1, first) == math.copysign(1, second))
                                               or (math.isnan(first) and math.isnan(second)))  # fmt: skip
     if isinstance(first, Pointer):
-        return isinstance(second, Pointer) and first.object == second.object and same_value(first.offset, second.offset)
+        return (
+            isinstance(second, Pointer) and first.object == second.object and is_same_value(first.offset, second.offset)
+        )
     if isinstance(first, list):
-        return isinstance(second, list) and all(map(same_value, first, second))
+        return isinstance(second, list) and all(map(is_same_value, first, second))
     if isinstance(first, tuple):
-        return type(first) is type(second) and len(first) == len(second) and all(map(same_value, first, second))
+        return type(first) is type(second) and len(first) == len(second) and all(map(is_same_value, first, second))
     return type(first) is type(second) and first == second
 
 
@@ -1523,7 +1541,7 @@ def is_same_content(first: MemoryObject, second: MemoryObject) -> bool:
     if first.cells.keys() != second.cells.keys() or first.is_live != second.is_live:
         return False
     return all(
-        size == second.cells[place][0] and same_value(value, second.cells[place][1])
+        size == second.cells[place][0] and is_same_value(value, second.cells[place][1])
         for place, (size, value) in first.cells.items()
     )
 
@@ -1535,6 +1553,3 @@ def read_memory_in_use() -> int:
             return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
     except (OSError, ValueError, IndexError):
         return 0
-
-
-__all__ = ["MOVED", "Call", "CallModel", "Ended", "Executor", "SymbolicInput", "ThrownError", "load", "write_scalar"]

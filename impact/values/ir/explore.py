@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from ..outcomes import Bounds, CallbackPath, Exploration, Reaction
 from . import harness_calls, library_containers, library_numbers, library_runtime, library_text
 from .executor import Executor
-from .layout import LayoutError
+from .layout import UnknownSizeError
 from .models import find_model
 from .module import ReadingError
 from .reader import Program
@@ -27,7 +27,7 @@ def explore(
     """
     try:
         return explore_program(Program(ir_texts), entry, bounds, is_workspace_file)
-    except (ReadingError, LayoutError, ValueError, KeyError, IndexError, RecursionError) as problem:
+    except (ReadingError, UnknownSizeError, ValueError, KeyError, IndexError, RecursionError) as problem:
         failed = CallbackPath(Reaction.UNKNOWN, (), reason=f"the program cannot be read: {problem}")
         return Exploration(paths=[failed], bounds=bounds)
 

@@ -106,7 +106,7 @@ def make_characters(call: Call) -> Any:
     most = call.arguments[2]
     target = require_access(run, state, call.arguments[1], most + 1)
     size = run.solving.inputs.get(path + ".size")
-    memory_object = state.own_object(target.object)
+    memory_object = state.take_object(target.object)
     for index in range(most):
         term: Any = run.solving.make_input(f"{path}[{index}]", InputKind.CHARACTER, 8).term
         if size is not None:
@@ -149,9 +149,7 @@ def end_sent(call: Call) -> Any:
 def _add_sent(state: State, path: str, value: Any, kind: tuple[InputKind, int, bool]):
     sending = state.sending
     if sending is not None and value is not UNDEFINED:
-        state.sending = sending._replace(
-            values={**sending.values, path: value}, kinds={**sending.kinds, path: kind}
-        )
+        state.sending = sending._replace(values={**sending.values, path: value}, kinds={**sending.kinds, path: kind})
 
 
 def _cut(value: Any, bits: int) -> Any:
@@ -241,7 +239,7 @@ def resize_block(call: Call) -> Any:
     pointer, size = call.arguments
     if not isinstance(pointer, Pointer) or pointer.object == 0:
         return
-    memory_object: MemoryObject = call.state.own_object(pointer.object)
+    memory_object: MemoryObject = call.state.take_object(pointer.object)
     if isinstance(size, int):
         memory_object.size = min(memory_object.size, size)
     else:
@@ -256,5 +254,3 @@ def end_unknown(call: Call) -> Any:
 @model("ri_assume")
 def assume_condition(call: Call) -> Any:
     call.run.assume(call.state, compare_integers("ne", call.arguments[0], 0, 32))
-
-

@@ -7,7 +7,7 @@ from functools import cached_property
 _INTEGER_BYTES = {1: 1, 8: 1, 16: 2, 32: 4, 64: 8, 128: 16}
 
 
-class LayoutError(Exception):
+class UnknownSizeError(Exception):
     """A type has no size that is known here."""
 
 
@@ -112,7 +112,7 @@ class StructureType(IrType):
     @cached_property
     def size(self) -> int:  # pyright: ignore[reportIncompatibleVariableOverride]
         if self.is_opaque:
-            raise LayoutError("opaque type")
+            raise UnknownSizeError("opaque type")
         if not self.fields:
             return 0
         end = self.offsets[-1] + self.fields[-1].size

@@ -13,7 +13,7 @@ from .executor import Call
 from .layout import POINTER, get_integer_type
 from .models import model, model_pattern
 from .module import NULL, Pointer
-from .terms import add_offsets, reduce_term
+from .terms import add_offsets
 
 _COLOR, _PARENT, _LEFT, _RIGHT = 0, 8, 16, 24
 _I32, _I64 = get_integer_type(32), get_integer_type(64)
@@ -125,7 +125,7 @@ def _replace_child(call: Call, parent: Pointer, old: Pointer, new: Any, header: 
 
 
 @model("_ZNSt8__detail15_List_node_base7_M_hookEPS0_")
-def hook_node(call: Call) -> Any:
+def insert_list_node(call: Call) -> Any:
     node, position = call.arguments
     previous = _get(call, position, 8)
     _set(call, node, 0, position)
@@ -135,7 +135,7 @@ def hook_node(call: Call) -> Any:
 
 
 @model("_ZNSt8__detail15_List_node_base9_M_unhookEv")
-def unhook_node(call: Call) -> Any:
+def remove_list_node(call: Call) -> Any:
     node = call.arguments[0]
     following, previous = _get(call, node, 0), _get(call, node, 8)
     _set(call, previous, 0, following)
@@ -202,6 +202,3 @@ def check_rehash(call: Call) -> Any:
 @model("_ZNKSt8__detail20_Prime_rehash_policy15_M_bkt_for_elementsEm")
 def count_buckets(call: Call) -> Any:
     return call.arguments[1]
-
-
-__all__ = ["reduce_term"]

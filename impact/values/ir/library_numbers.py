@@ -9,15 +9,13 @@ from typing import Any
 
 import z3
 
-from ..outcomes import InputKind
 from .access import store
 from .executor import Call
-from .layout import FloatType, IrType, get_integer_type
+from .layout import IrType
 from .models import model, model_pattern
-from .module import UNDEFINED, Pointer
+from .module import Pointer
 from .terms import (
     NEAREST,
-    SORTS,
     choose_term,
     compare_floats,
     compare_integers,
@@ -117,7 +115,9 @@ def compute_saturated(call: Call) -> Any:
         first, second = extend(2, make_bits(left, bits)), extend(2, make_bits(right, bits))
         exact = first + second if operation == "add" else first - second
         low, high = (-(1 << (bits - 1)), (1 << (bits - 1)) - 1) if is_signed else (0, (1 << bits) - 1)
-        bounded = z3.If(exact < low, z3.BitVecVal(low, bits + 2), z3.If(exact > high, z3.BitVecVal(high, bits + 2), exact))
+        bounded = z3.If(
+            exact < low, z3.BitVecVal(low, bits + 2), z3.If(exact > high, z3.BitVecVal(high, bits + 2), exact)
+        )
         return reduce_term(z3.Extract(bits - 1, 0, bounded))
 
     return _apply(call, compute, 2)
@@ -181,8 +181,13 @@ def measure_object(call: Call) -> Any:
     return max(0, memory_object.size - pointer.offset)
 
 
-@model("llvm.expect.*", "llvm.ssa.copy*", "llvm.launder.*", "llvm.strip.*", "llvm.threadlocal.address*", "llvm.annotation.*",
-       "llvm.arithmetic.fence*", "llvm.ptrmask*")  # fmt: skip
+_PASSING = (
+    "llvm.expect.*", "llvm.ssa.copy*", "llvm.launder.*", "llvm.strip.*", "llvm.threadlocal.address*",
+    "llvm.annotation.*", "llvm.arithmetic.fence*", "llvm.ptrmask*",
+)  # fmt: skip
+
+
+@model(*_PASSING)
 def pass_first(call: Call) -> Any:
     return call.arguments[0]
 
@@ -212,7 +217,9 @@ def convert_saturated(call: Call) -> Any:
     inside = convert_float_to_integer(value, bits, source.bits, is_signed)
     too_low = compare_floats("olt", value, float(low), source.bits)
     too_high = compare_floats("oge", value, float(high), source.bits)
-    result = choose_term(too_low, low & ((1 << bits) - 1), choose_term(too_high, high, inside, bits, False), bits, False)
+    result = choose_term(
+        too_low, low & ((1 << bits) - 1), choose_term(too_high, high, inside, bits, False), bits, False
+    )
     return choose_term(compare_floats("uno", value, value, source.bits), 0, result, bits, False)
 
 
@@ -472,13 +479,13 @@ def compute_known(call: Call) -> Any:
         if bound is not None
     ]
     if name in ("fmod", "remainder"):
-        bounds.append(compare_floats("ole", abs_term(result), abs_term(values[1]), bits))
+        bounds.append(compare_floats("ole", take_magnitude(result), take_magnitude(values[1]), bits))
     holds = join_truths(number, *bounds)
     run.assume(state, _join_either(inside, holds, negate_truth(number)))
     return result
 
 
-def abs_term(value: Any) -> Any:
+def take_magnitude(value: Any) -> Any:
     return abs(value) if isinstance(value, float) else z3.fpAbs(value)
 
 
@@ -538,6 +545,3 @@ def split_number(call: Call) -> Any:
 @model("frexp", "frexpf")
 def split_exponent(call: Call) -> Any:
     raise call.run.make_unknown("frexp")
-
-
-__all__ = ["SORTS", "UNDEFINED", "FloatType", "InputKind", "get_integer_type"]

@@ -8,7 +8,7 @@ from typing import Any
 import z3
 
 from ..outcomes import NOWHERE, CodeLine, CrashKind, InputKind
-from .access import copy_memory, fill_memory, load, read_text, store, write_scalar
+from .access import copy_memory, fill_memory, load, read_text, store
 from .exceptions import (
     DESTROY,
     WHAT,
@@ -25,14 +25,13 @@ from .exceptions import (
 from .executor import Call, Ended, ThrownError
 from .layout import POINTER, get_integer_type
 from .models import model, model_pattern
-from .module import NULL, UNDEFINED, Code, Pointer
+from .module import NULL, UNDEFINED, Pointer
 from .state import Raised
 from .terms import (
     add_offsets,
     compare_integers,
     compute_integer,
     make_bits,
-    read_signed,
     reduce_term,
 )
 
@@ -96,7 +95,16 @@ def allocate_again(call: Call) -> Any:
     return new
 
 
-@model("_ZdlPv", "_ZdaPv", "_ZdlPvm", "_ZdaPvm", "_ZdlPvSt11align_val_t", "_ZdlPvmSt11align_val_t", "_ZdaPvSt11align_val_t", "free")
+@model(
+    "_ZdlPv",
+    "_ZdaPv",
+    "_ZdlPvm",
+    "_ZdaPvm",
+    "_ZdlPvSt11align_val_t",
+    "_ZdlPvmSt11align_val_t",
+    "_ZdaPvSt11align_val_t",
+    "free",
+)
 def free_block(call: Call) -> Any:
     run, state = call.run, call.state
     pointer = call.arguments[0]
@@ -211,7 +219,7 @@ def throw_standard(call: Call) -> Any:
 
 
 @model("__cxa_bad_cast", "__cxa_bad_typeid", "__cxa_throw_bad_array_new_length")
-def throw_of_runtime(call: Call) -> Any:
+def throw_bad_cast(call: Call) -> Any:
     name = {"__cxa_bad_cast": "St8bad_cast", "__cxa_bad_typeid": "St10bad_typeid"}.get(
         call.name, "St20bad_array_new_length"
     )
@@ -231,7 +239,9 @@ def _split_member(name: str) -> tuple[str, str] | None:
     return (mangled, name[end:]) if is_standard_exception(mangled) else None
 
 
-@model_pattern(r"_ZNK?St\d+(?:\w+_error|exception|invalid_argument|out_of_range|bad_\w+?)(?:C[12]E\w*|D[012]Ev|4whatEv|aSE\w+)")
+@model_pattern(
+    r"_ZNK?St\d+(?:\w+_error|exception|invalid_argument|out_of_range|bad_\w+?)(?:C[12]E\w*|D[012]Ev|4whatEv|aSE\w+)"
+)
 def call_member_of_exception(call: Call) -> Any:
     run, state = call.run, call.state
     found = _split_member(call.name)
@@ -449,10 +459,21 @@ def release_guard(call: Call) -> Any:
     store(call.run, call.state, call.arguments[0], _I8, 1)
 
 
-@model("__cxa_guard_abort", "_ZNSt8ios_base4InitC1Ev", "_ZNSt8ios_base4InitD1Ev", "llvm.stackrestore*", "llvm.prefetch*",
-       "llvm.invariant.start*", "llvm.invariant.end*", "llvm.va_end*", "__ubsan_on_report", "llvm.donothing", "llvm.var.annotation*")  # fmt: skip
+_SKIPPED = (
+    "__cxa_guard_abort", "_ZNSt8ios_base4InitC1Ev", "_ZNSt8ios_base4InitD1Ev", "llvm.stackrestore*",
+    "llvm.prefetch*", "llvm.invariant.start*", "llvm.invariant.end*", "llvm.va_end*", "__ubsan_on_report", "llvm.donothing",
+    "llvm.var.annotation*",
+)  # fmt: skip
+
+
+@model(*_SKIPPED)
 def skip_call(call: Call) -> Any:
     return None
+
+
+@model("llvm.invariant.start*")
+def begin_constant(call: Call) -> Any:
+    return NULL
 
 
 @model("__cxa_atexit", "atexit", "__cxa_thread_atexit", "at_quick_exit")
@@ -460,14 +481,20 @@ def register_end(call: Call) -> Any:
     return 0
 
 
-@model("pthread_mutex_lock", "pthread_mutex_unlock", "pthread_mutex_trylock", "pthread_mutex_init", "pthread_mutex_destroy",
-       "pthread_mutexattr_init", "pthread_mutexattr_settype", "pthread_mutexattr_destroy", "pthread_rwlock_rdlock",
-       "pthread_rwlock_wrlock", "pthread_rwlock_unlock", "pthread_rwlock_init", "pthread_rwlock_destroy",
-       "pthread_cond_signal", "pthread_cond_broadcast", "pthread_cond_init", "pthread_cond_destroy", "sched_yield",
-       "usleep", "sleep", "nanosleep", "clock_nanosleep", "pthread_mutex_timedlock", "pthread_mutex_clocklock",
-       "_ZNSt18condition_variable10notify_allEv", "_ZNSt18condition_variable10notify_oneEv",
-       "_ZNSt18condition_variableC1Ev", "_ZNSt18condition_variableD1Ev", "fflush", "setvbuf", "sync", "srand",
-       "_ZNSt15__exception_ptr13exception_ptr10_M_releaseEv", "_ZNSt15__exception_ptr13exception_ptr9_M_addrefEv")  # fmt: skip
+_SUCCEEDING = (
+    "pthread_mutex_lock", "pthread_mutex_unlock", "pthread_mutex_trylock", "pthread_mutex_init",
+    "pthread_mutex_destroy", "pthread_mutexattr_init", "pthread_mutexattr_settype", "pthread_mutexattr_destroy",
+    "pthread_rwlock_rdlock", "pthread_rwlock_wrlock", "pthread_rwlock_unlock", "pthread_rwlock_init",
+    "pthread_rwlock_destroy", "pthread_cond_signal", "pthread_cond_broadcast", "pthread_cond_init",
+    "pthread_cond_destroy", "sched_yield", "usleep", "sleep", "nanosleep", "clock_nanosleep",
+    "pthread_mutex_timedlock", "pthread_mutex_clocklock", "_ZNSt18condition_variable10notify_allEv",
+    "_ZNSt18condition_variable10notify_oneEv", "_ZNSt18condition_variableC1Ev", "_ZNSt18condition_variableD1Ev",
+    "fflush", "setvbuf", "sync", "srand", "_ZNSt15__exception_ptr13exception_ptr10_M_releaseEv",
+    "_ZNSt15__exception_ptr13exception_ptr9_M_addrefEv",
+)  # fmt: skip
+
+
+@model(*_SUCCEEDING)
 def succeed(call: Call) -> Any:
     return 0 if call.instruction.type.size else None
 
@@ -480,6 +507,24 @@ def get_own_number(call: Call) -> Any:
 @model("pthread_once")
 def run_once(call: Call) -> Any:
     raise call.run.make_unknown("pthread_once")
+
+
+@model("_ZNSt6thread15_M_start_thread*")
+def start_thread(call: Call) -> Any:
+    note = "a thread that is started does not run"
+    if note not in call.state.assumed_notes:
+        call.state.assumed_notes = (*call.state.assumed_notes, note)
+    store(call.run, call.state, call.arguments[0], _I64, 1)
+
+
+@model("_ZNSt6thread4joinEv", "_ZNSt6thread6detachEv")
+def end_thread(call: Call) -> Any:
+    store(call.run, call.state, call.arguments[0], _I64, 0)
+
+
+@model("_ZNSt6thread20hardware_concurrencyEv")
+def count_processors(call: Call) -> Any:
+    return 2
 
 
 def make_now(call: Call, name: str) -> Any:
@@ -542,6 +587,3 @@ def read_environment(call: Call) -> Any:
     if note not in call.state.notes:
         call.state.assumed_notes = (*call.state.assumed_notes, note)
     return NULL
-
-
-__all__ = ["Code", "read_signed", "write_scalar"]

@@ -15,22 +15,20 @@ import z3
 
 from ..outcomes import CrashKind
 from .access import read_bytes_from, read_text, require_access, store
-from .executor import Call, Ended
+from .executor import Call
 from .harness_calls import add_log
 from .layout import POINTER, get_integer_type
 from .models import model, model_pattern
-from .module import NULL, UNDEFINED, Pointer
+from .module import NULL, Pointer
 from .terms import (
     add_offsets,
     choose_term,
     compare_integers,
     compute_integer,
-    is_term,
     join_truths,
     make_bits,
     make_truth,
     negate_truth,
-    read_signed,
     reduce_term,
 )
 
@@ -158,8 +156,7 @@ def find_byte(call: Call) -> Any:
             within.append(alive)
             alive = join_truths(alive, compare_integers("ne", each, 0, 8))
     hits = [
-        join_truths(inside, compare_integers("eq", each, wanted, 8))
-        for inside, each in zip(within, parts, strict=True)
+        join_truths(inside, compare_integers("eq", each, wanted, 8)) for inside, each in zip(within, parts, strict=True)
     ]
     if not run.decide(state, _join_any(hits)):
         return NULL
@@ -421,7 +418,9 @@ def _begins_with_number(parts: list[Any]) -> Any:
     def begins(place: int) -> Any:
         dotted = join_truths(compare_integers("eq", padded[place], 46, 8), _is_digit(padded[place + 1]))
         words = [
-            join_truths(*[compare_integers("eq", _lower(padded[place + step], 8), byte, 8) for step, byte in enumerate(word)])
+            join_truths(
+                *[compare_integers("eq", _lower(padded[place + step], 8), byte, 8) for step, byte in enumerate(word)]
+            )
             for word in (b"inf", b"nan")
             if place + 2 < len(padded)
         ]
@@ -474,15 +473,22 @@ def format_text(call: Call) -> Any:
     if isinstance(target, Pointer) and target.object and most >= 0:
         require_access(run, state, target, most + 1)
         for index in range(most):
-            store(run, state, Pointer(target.object, add_offsets(target.offset, index)), _I8, run.make_any(state, what, 8))
+            store(
+                run, state, Pointer(target.object, add_offsets(target.offset, index)), _I8, run.make_any(state, what, 8)
+            )
         store(run, state, Pointer(target.object, add_offsets(target.offset, most)), _I8, 0)
     result = run.make_any(state, what, 32)
     run.assume(state, reduce_term(z3.ULE(result, 1 << 16)))
     return result
 
 
-@model("printf", "puts", "putchar", "fprintf", "fputs", "fputc", "putc", "fwrite", "vprintf", "vfprintf", "perror",
-       "__printf_chk", "__fprintf_chk", "__vfprintf_chk", "syslog", "fputs_unlocked", "_IO_putc", "write")  # fmt: skip
+_PRINTING = (
+    "printf", "puts", "putchar", "fprintf", "fputs", "fputc", "putc", "fwrite", "vprintf", "vfprintf", "perror",
+    "__printf_chk", "__fprintf_chk", "__vfprintf_chk", "syslog", "fputs_unlocked", "_IO_putc", "write",
+)  # fmt: skip
+
+
+@model(*_PRINTING)
 def print_text(call: Call) -> Any:
     add_log(call.state, "stdout")
     type_ = call.instruction.type
@@ -522,6 +528,3 @@ def skip_stream(call: Call) -> Any:
 )
 def read_stream(call: Call) -> Any:
     fill_any_text(call, call.arguments[0], "the text of a stream")
-
-
-__all__ = ["UNDEFINED", "Ended", "is_term", "read_signed"]

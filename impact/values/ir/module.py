@@ -9,17 +9,17 @@ from .layout import IrType
 
 
 class ReadingError(Exception):
-    """Text that is not understood: what stands there."""
+    """BytesConstant that is not understood: what stands there."""
 
 
-class Undefined:
+class UndefinedValue:
     """undef and poison, and bytes that nobody wrote: any value."""
 
     def __repr__(self):
         return "undefined"
 
 
-UNDEFINED = Undefined()
+UNDEFINED = UndefinedValue()
 
 
 class Pointer(NamedTuple):
@@ -65,7 +65,7 @@ class Zeros(NamedTuple):
     type: IrType
 
 
-class Text(NamedTuple):
+class BytesConstant(NamedTuple):
     """An operand: an array of bytes."""
 
     content: bytes
@@ -98,7 +98,7 @@ class Instruction:
 
 
 @dataclass
-class Block:
+class BasicBlock:
     """A basic block. phis are at its start and run at once. number: its place in the function."""
 
     label: str
@@ -114,14 +114,14 @@ class Function:
     key: str
     name: str
     parameters: list[str]
-    blocks: dict[str, Block]
+    blocks: dict[str, BasicBlock]
     entry: str
     unit: Any
     subprogram: int = 0
 
 
 @dataclass
-class Variable:
+class GlobalVariable:
     """A global variable. value: its initial operand, None where another module has it."""
 
     key: str

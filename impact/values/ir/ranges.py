@@ -33,9 +33,7 @@ class FloatSpan(NamedTuple):
 
 _ANY_FLOAT = FloatSpan(-math.inf, math.inf, True)
 _ONLY_NAN = FloatSpan(math.inf, -math.inf, True)
-_FLOAT_COMPARISONS = frozenset(
-    (z3.Z3_OP_FPA_LT, z3.Z3_OP_FPA_LE, z3.Z3_OP_FPA_GT, z3.Z3_OP_FPA_GE, z3.Z3_OP_FPA_EQ)
-)
+_FLOAT_COMPARISONS = frozenset((z3.Z3_OP_FPA_LT, z3.Z3_OP_FPA_LE, z3.Z3_OP_FPA_GT, z3.Z3_OP_FPA_GE, z3.Z3_OP_FPA_EQ))
 _COMPARISONS = frozenset((z3.Z3_OP_SLEQ, z3.Z3_OP_SGEQ, z3.Z3_OP_SLT, z3.Z3_OP_SGT))
 _UNSIGNED = {
     z3.Z3_OP_ULEQ: z3.Z3_OP_SLEQ, z3.Z3_OP_UGEQ: z3.Z3_OP_SGEQ, z3.Z3_OP_ULT: z3.Z3_OP_SLT, z3.Z3_OP_UGT: z3.Z3_OP_SGT,
@@ -81,9 +79,7 @@ class Ranges:
             if left.high < right.low or right.high < left.low:
                 return False
         if kind in _FLOAT_COMPARISONS:
-            return _compare_floats(
-                kind, self.find_float_span(condition.arg(0)), self.find_float_span(condition.arg(1))
-            )
+            return _compare_floats(kind, self.find_float_span(condition.arg(0)), self.find_float_span(condition.arg(1)))
         if kind == z3.Z3_OP_FPA_IS_NAN:
             span = self.find_float_span(condition.arg(0))
             return False if not span.has_nan else True if span.low > span.high else None
@@ -284,9 +280,7 @@ def _combine_floats(kind: int, left: FloatSpan, right: FloatSpan, bits: int, is_
         return _ANY_FLOAT
     if is_square:
         size = _take_magnitude(left)
-        return FloatSpan(
-            round_float(size.low * size.low, bits), round_float(size.high * size.high, bits), left.has_nan
-        )
+        return FloatSpan(round_float(size.low * size.low, bits), round_float(size.high * size.high, bits), left.has_nan)
     corners = [_CORNERS[kind](a, b) for a in (left.low, left.high) for b in (right.low, right.high)]
     has_nan = left.has_nan or right.has_nan or any(math.isnan(each) for each in corners)
     if kind == z3.Z3_OP_FPA_MUL and not has_nan:

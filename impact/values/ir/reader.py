@@ -28,8 +28,6 @@ from .layout import (
     POINTER,
     VOID,
     ArrayType,
-    FloatType,
-    IntegerType,
     IrType,
     LongDoubleType,
     StructureType,
@@ -39,15 +37,15 @@ from .module import (
     NULL,
     UNDEFINED,
     Argument,
-    Block,
+    BasicBlock,
     Composite,
     Computed,
     Function,
     GlobalName,
+    GlobalVariable,
     Instruction,
     ReadingError,
-    Text,
-    Variable,
+    BytesConstant,
     Zeros,
 )
 
@@ -61,24 +59,41 @@ _TYPE = re.compile(r"^(%\"[^\"]*\"|%[-\w$.:]+) = type ([^\n]*)$", re.MULTILINE)
 _DECLARED = re.compile(r"^declare [^\n]*?(@\"[^\"]*\"|@[-\w$.]+)\(", re.MULTILINE)
 _METADATA = re.compile(r"^!(\d+) = (?:distinct )?(!DI(?:Location|Subprogram|Lexical|File)[^\n]*)$", re.MULTILINE)
 _LABEL = re.compile(r'([-\w$.]+|"[^"]*"):')
-_ATTACHED = re.compile(r",? !(?:dbg|prof|tbaa|nosanitize|srcloc|range|llvm|heapallocsite|noundef|nonnull|align|invariant"
-                       r"|unpredictable|callees|noalias|alias|misexpect|annotation|dereferenceable|func_sanitize"
-                       r"|DIAssignID|kcfi_type|tbaa_struct|noalias_addrspace|mmra)[\w.]* (?:!\d+|!\{\})")  # fmt: skip
+_ATTACHED = re.compile(r",? ![A-Za-z][\w.]* (?:!\d+|!\{\})")
 _PLACE = re.compile(r"!dbg !(\d+)")
 _LOCAL_LINKAGE = re.compile(r"(?:private|internal)\b")
 
 _SKIPPED = frozenset(
-    ["noundef", "nonnull", "nocapture", "readonly", "writeonly", "readnone", "noalias", "signext", "zeroext", "returned", "immarg", "inreg", "nofree", "local_unnamed_addr", "unnamed_addr", "dso_local", "dso_preemptable", "internal", "private", "linkonce_odr", "linkonce", "weak", "weak_odr", "external", "extern_weak", "hidden", "protected", "default", "tail", "musttail", "notail", "fastcc", "ccc", "coldcc", "nest", "swiftself", "allocptr", "allocalign", "available_externally", "comdat", "thread_local", "appending", "common", "nuw", "nsw", "exact", "inbounds", "fast", "nnan", "ninf", "nsz", "arcp", "contract", "afn", "reassoc", "volatile", "disjoint", "nneg", "samesign", "nusw", "noext", "writable", "dead_on_unwind", "dead_on_return", "inrange", "externally_initialized", "icmp_samesign", "cxx_fast_tlscc", "swiftcc", "swifttailcc"]
-)
+    (
+        "noundef", "nonnull", "nocapture", "readonly", "writeonly", "readnone", "noalias", "signext", "zeroext",
+        "returned", "immarg", "inreg", "nofree", "local_unnamed_addr", "unnamed_addr", "dso_local",
+        "dso_preemptable", "internal", "private", "linkonce_odr", "linkonce", "weak", "weak_odr", "external",
+        "extern_weak", "hidden", "protected", "default", "tail", "musttail", "notail", "fastcc", "ccc",
+        "coldcc", "nest", "swiftself", "allocptr", "allocalign", "available_externally", "comdat",
+        "thread_local", "appending", "common", "nuw", "nsw", "exact", "inbounds", "fast", "nnan", "ninf", "nsz",
+        "arcp", "contract", "afn", "reassoc", "volatile", "disjoint", "nneg", "samesign", "nusw", "noext",
+        "writable", "dead_on_unwind", "dead_on_return", "inrange", "externally_initialized", "icmp_samesign",
+        "cxx_fast_tlscc", "swiftcc", "swifttailcc",
+    )
+)  # fmt: skip
 _SKIPPED_WITH_VALUE = frozenset(
-    ["comdat", "align", "dereferenceable", "dereferenceable_or_null", "sret", "captures", "initializes", "range", "memory", "inrange", "elementtype", "preallocated", "inalloca", "nofpclass", "addrspace", "thread_local", "vscale_range", "alignstack"]
-)
-_BINARY = frozenset(
-    ["add", "sub", "mul", "udiv", "sdiv", "urem", "srem", "and", "or", "xor", "shl", "lshr", "ashr", "fadd", "fsub", "fmul", "fdiv", "frem"]
-)
+    (
+        "comdat", "align", "dereferenceable", "dereferenceable_or_null", "sret", "captures", "initializes", "range",
+        "memory", "inrange", "elementtype", "preallocated", "inalloca", "nofpclass", "addrspace",
+        "thread_local", "vscale_range", "alignstack",
+    )
+)  # fmt: skip
+INTEGER_OPERATIONS = (
+    "add", "sub", "mul", "udiv", "sdiv", "urem", "srem", "and", "or", "xor", "shl", "lshr", "ashr",
+)  # fmt: skip
+FLOAT_OPERATIONS = ("fadd", "fsub", "fmul", "fdiv", "frem")
+_BINARY = frozenset((*INTEGER_OPERATIONS, *FLOAT_OPERATIONS))
 _CASTS = frozenset(
-    ["zext", "sext", "trunc", "fptosi", "fptoui", "sitofp", "uitofp", "fpext", "fptrunc", "bitcast", "ptrtoint", "inttoptr", "addrspacecast"]
-)
+    (
+        "zext", "sext", "trunc", "fptosi", "fptoui", "sitofp", "uitofp", "fpext", "fptrunc", "bitcast", "ptrtoint",
+        "inttoptr", "addrspacecast",
+    )
+)  # fmt: skip
 _IGNORED_CALLS = ("@llvm.dbg.", "@llvm.lifetime.", "@llvm.experimental.noalias", "@llvm.assume", "@llvm.pseudoprobe")
 
 
@@ -228,7 +243,7 @@ class _Tokens:
         if token in ("undef", "poison"):
             return UNDEFINED
         if first == "c" and token[1:2] == '"':
-            return Text(_unescape(token[2:-1]))
+            return BytesConstant(_unescape(token[2:-1]))
         if token in ("[", "{"):
             return Composite(tuple(self._read_typed({"[": "]", "{": "}"}[token])))
         if token == "<":
@@ -374,7 +389,7 @@ class IrUnit:
         for name in (*self.function_places, *self.variable_texts):
             yield self.make_key(name), name
 
-    def read_variable(self, name: str) -> Variable | str | None:
+    def read_variable(self, name: str) -> GlobalVariable | str | None:
         """The variable of that name, or the key of what it is an alias of; None where the text is not understood."""
         text = self.variable_texts[name]
         alias = re.search(r"\b(?:alias|ifunc)\b[^@]*(@\"[^\"]*\"|@[-\w$.]+)", text.split('"', 1)[0] or text)
@@ -391,7 +406,7 @@ class IrUnit:
         is_constant = tokens.take() == "constant"
         type_ = tokens.read_type()
         value = None if is_external else tokens.read_operand(type_)
-        return Variable(self.make_key(name), name[1:].strip('"'), type_, value, is_constant)
+        return GlobalVariable(self.make_key(name), name[1:].strip('"'), type_, value, is_constant)
 
     def read_function(self, name: str) -> Function:
         start = self.function_places[name]
@@ -409,7 +424,12 @@ class IrUnit:
         return function
 
     def _read_parameters(self, head: str, name: str) -> list[str]:
-        tokens = _Tokens(_PLACE.sub("", head[head.index(name + "(") + len(name) + 1 :]).rstrip("{ "), self)
+        start = head.index(name + "(") + len(name) + 1
+        depth, end = 1, start
+        while depth and end < len(head):
+            depth += (head[end] == "(") - (head[end] == ")")
+            end += 1
+        tokens = _Tokens(head[start:end], self)
         parameters: list[str] = []
         while not tokens.accept(")"):
             if tokens.accept("..."):
@@ -422,7 +442,7 @@ class IrUnit:
         return parameters
 
     def _read_body(self, function: Function, lines: Sequence[str]):
-        block: Block | None = None
+        block: BasicBlock | None = None
         position, count = 0, len(lines)
         while position < count:
             line = lines[position]
@@ -432,7 +452,7 @@ class IrUnit:
             if line[0] != " ":
                 label = _LABEL.match(line)
                 if label:
-                    block = Block("%" + label[1], len(function.blocks), [], [])
+                    block = BasicBlock("%" + label[1], len(function.blocks), [], [])
                     if not function.blocks:
                         function.entry = block.label
                     function.blocks[block.label] = block
@@ -441,7 +461,7 @@ class IrUnit:
             if stripped.startswith("#dbg"):
                 continue
             if block is None:
-                block = Block(function.entry, 0, [], [])
+                block = BasicBlock(function.entry, 0, [], [])
                 function.blocks[block.label] = block
             if stripped.startswith("switch") and line.rstrip().endswith("["):
                 while not lines[position].strip().startswith("]"):
@@ -460,14 +480,15 @@ class IrUnit:
                 continue
             self._read_line(line, block)
 
-    def _read_line(self, line: str, block: Block):
+    def _read_line(self, line: str, block: BasicBlock):
         located = _PLACE.search(line)
         text = _ATTACHED.sub("", line) if "!" in line else line
         try:
             instruction = _read_instruction(_Tokens(text, self))
         except (ReadingError, ValueError, IndexError, KeyError) as problem:
             result = re.match(r"\s*(%[-\w$.]+) =", line)
-            instruction = Instruction("unsupported", result[1] if result else "", VOID, (), f"{problem}: {text.strip()[:60]}")
+            said = f"{problem}: {text.strip()[:60]}"
+            instruction = Instruction("unsupported", result[1] if result else "", VOID, (), said)
         instruction.location = int(located[1]) if located else 0
         (block.phis if instruction.opcode == "phi" else block.instructions).append(instruction)
 
@@ -737,7 +758,7 @@ class Program:
                 self._variables.setdefault(unit.make_key(name), []).append((unit, name))
         self._declared = {unit.make_key(name) for unit in self.units for name in unit.declared}
         self._read_functions: dict[str, Function] = {}
-        self._read_variables: dict[str, Variable | str | None] = {}
+        self._read_variables: dict[str, GlobalVariable | str | None] = {}
 
     def is_function(self, key: str) -> bool:
         """Whether a key names a function, with a body or without."""
@@ -753,10 +774,10 @@ class Program:
             self._read_functions[key] = unit.read_function(name)
         return self._read_functions[key]
 
-    def get_variable(self, key: str) -> Variable | str | None:
+    def get_variable(self, key: str) -> GlobalVariable | str | None:
         """A variable, the key of what it is an alias of, or None. One with a value is preferred."""
         if key not in self._read_variables:
-            found: Variable | str | None = None
+            found: GlobalVariable | str | None = None
             for unit, name in self._variables.get(key, ()):
                 each = unit.read_variable(name)
                 if found is None or isinstance(each, str) or (each is not None and each.value is not None):
@@ -771,12 +792,9 @@ class Program:
             if "@llvm.global_ctors" not in unit.variable_texts:
                 continue
             variable = unit.read_variable("@llvm.global_ctors")
-            if not isinstance(variable, Variable) or not isinstance(variable.value, Composite):
+            if not isinstance(variable, GlobalVariable) or not isinstance(variable.value, Composite):
                 continue
             for _, entry in variable.value.parts:
                 if isinstance(entry, Composite) and isinstance(entry.parts[1][1], GlobalName):
                     found.append((entry.parts[0][1], entry.parts[1][1].name))
         return [key for _, key in sorted(found, key=lambda each: each[0])]
-
-
-__all__ = ["FloatType", "IntegerType", "IrUnit", "Program", "make_zero"]

@@ -28,7 +28,7 @@ _SLOW_OPERATIONS = frozenset(
 )  # fmt: skip
 
 
-class Undecided(Exception):
+class SolverTimeout(Exception):
     """The solver gave no answer in time."""
 
 
@@ -161,7 +161,7 @@ class Solving:
     def find_model(self, conditions: Sequence[z3.BoolRef], model: Model) -> dict[str, int] | None:
         """Values of the variables of some conditions that fulfil them, or None where there are none.
 
-        model: a near miss, from which guesses begin. Raises Undecided.
+        model: a near miss, from which guesses begin. Raises SolverTimeout.
         """
         key = frozenset(each.get_id() for each in conditions)
         if key in self._answers:
@@ -204,7 +204,7 @@ class Solving:
         found = self.guess_model(conditions, traits, model, 200)
         if found is None:
             self.undecided += 1
-            raise Undecided
+            raise SolverTimeout
         return found
 
     def guess_model(
@@ -219,7 +219,8 @@ class Solving:
         # What is hardest is asked first: the newest condition comes last in the list.
         ordered = list(reversed(conditions))
         constants = sorted(
-            {abs(value) for each in traits for value in each.constants if math.isfinite(value)}, key=lambda x: (x == 0, x)
+            {abs(value) for each in traits for value in each.constants if math.isfinite(value)},
+            key=lambda x: (x == 0, x),
         )[:6]
         for values in itertools.islice(self._list_guesses(floats, constants), tries):
             trial = dict(base)
@@ -233,12 +234,16 @@ class Solving:
         return None
 
     def _list_guesses(self, floats: Sequence[str], constants: Sequence[float]):
-        near = [
-            signed
-            for value in constants
-            for each in (value, math.nextafter(value, math.inf), value * 1.5, value * 0.5)
-            for signed in (each, -each)
-        ] if hasattr(math, "nextafter") else [s for v in constants for e in (v, v * 1.5, v * 0.5) for s in (e, -e)]
+        near = (
+            [
+                signed
+                for value in constants
+                for each in (value, math.nextafter(value, math.inf), value * 1.5, value * 0.5)
+                for signed in (each, -each)
+            ]
+            if hasattr(math, "nextafter")
+            else [s for v in constants for e in (v, v * 1.5, v * 0.5) for s in (e, -e)]
+        )
         pool = [*_USUAL[:6], *near, *_USUAL[6:]]
         yield {}
         for value in (0.0, 1.0):

@@ -9,7 +9,7 @@ import z3
 
 from ..outcomes import CodeLine, Observable, Sent
 from .memory import MemoryObject
-from .module import Block, Function, Instruction, Pointer
+from .module import BasicBlock, Function, Instruction, Pointer
 
 
 class Raised(NamedTuple):
@@ -42,7 +42,7 @@ class Frame:
     def __init__(self, function: Function, registers: dict[str, Any]):
         self.function = function
         self.registers = registers
-        self.block: Block = function.blocks[function.entry]
+        self.block: BasicBlock = function.blocks[function.entry]
         self.index = 0
         self.arrived_from = ""
         self.locals: list[int] = []
@@ -134,7 +134,7 @@ class State:
             self.shared_frames = number
         return self.frames[number]
 
-    def own_object(self, number: int) -> MemoryObject:
+    def take_object(self, number: int) -> MemoryObject:
         """An object to write to."""
         found = self.objects[number]
         if found.owner is not self.owner:

@@ -160,7 +160,7 @@ def scale_index(value: Any, bits: int, step: int) -> Any:
         return read_signed(value, bits) * step & ADDRESS_MASK
     value = make_bits(value, bits)
     wide = z3.SignExt(64 - bits, value) if bits < 64 else z3.Extract(63, 0, value) if bits > 64 else value
-    return wide * step if step != 1 else wide
+    return wide * step if step != 1 else wide  # pyright: ignore[reportOperatorIssue]
 
 
 def _divide(left: int, right: int) -> int:
@@ -297,7 +297,9 @@ def compare_floats(predicate: str, left: Any, right: Any, bits: int) -> Any:
     if isinstance(left, float) and isinstance(right, float):
         if math.isnan(left) or math.isnan(right):
             return int(predicate[0] == "u")
-        return 1 if predicate == "ord" else 0 if predicate == "uno" else int(_FLOAT_COMPARED[predicate[1:]](left, right))
+        return (
+            1 if predicate == "ord" else 0 if predicate == "uno" else int(_FLOAT_COMPARED[predicate[1:]](left, right))
+        )
     unordered = [
         z3.fpIsNaN(each) if is_term(each) else z3.BoolVal(math.isnan(each)) for each in (left, right)
     ]  # fmt: skip
