@@ -351,6 +351,7 @@ def fields(
 @_add_command(app)
 def values(
     path: _Workspace = Path("."),
+    file: Path | None = _make_argument("With `replay` as the workspace: a file of witnesses.", show_default=False),
     node: list[str] = _make_option("Only callbacks of this node. May be repeated."),
     topic: list[str] = _make_option("Only callbacks of this topic. May be repeated."),
     callback: list[str] = _make_option("Only this callback, by its name or the end of it. May be repeated."),
@@ -366,6 +367,10 @@ def values(
         "--replay",
         default=False,
     ),
+    fuzz: float = _make_option("Seconds for which each C++ callback is fuzzed besides.", default=0.0, min=0.0),
+    emit: str = _make_option("Write to --out: klee, tests, yaml (commands that send) or witnesses.", default=""),
+    out: Path | None = _make_option("Folder for --emit."),
+    workspace: Path = _make_option("With `values replay FILE`: the workspace.", default=Path(".")),
     publishers: bool = _make_option(
         "Explore also what publishes the messages, and compare.", "--publishers/--no-publishers", default=True
     ),
@@ -378,7 +383,7 @@ def values(
 ) -> None:
     """Show for which values of a message callbacks act, do nothing, only log or crash, each with an example, and which
     of these values publishers send. C++ callbacks need clang 15 or newer; nothing of the workspace runs without
-    --replay."""
+    --replay or --fuzz."""
 
 
 @_add_command(app)
