@@ -337,8 +337,8 @@ def _iterate_losses(before: OfferedNames, after: OfferedNames) -> Iterator[str]:
 
 
 class Loss(NamedTuple):
-    """What became of a name. last_in: the last version that may have it. removed_in: the first one that has not, empty
-    while all have it. deprecated_in: the first one from which on it warns."""
+    """What became of a name. last_in: the last version that surely has it. removed_in: the first one that surely has
+    not, empty while all have it. deprecated_in: the first one from which on it warns."""
 
     name: str
     last_in: str
@@ -354,15 +354,14 @@ def find_losses(versions: Sequence[OfferedNames]) -> list[Loss]:
         has = max((place for place, entry in enumerate(entries) if entry is not None), default=None)
         if has is None:
             continue
-        gone = len(versions)
-        while gone > has + 1 and versions[gone - 1].lacks(name, versions[has]):
-            gone -= 1
+        gone = _find_loss(versions, name, has)
         warned = [bool(e.bound is not None and e.bound.deprecated) if e is not None else None for e in entries]
         since = next((n for n in range(has + 1) if all(warned[n:gone])), None)
         removed = versions[gone].release.version if gone < len(versions) else ""
         if removed or since is not None:
             deprecated = versions[since].release.version if since is not None else ""
-            found[name] = Loss(name, versions[gone - 1].release.version, removed, deprecated)
+            last = has if removed else len(versions) - 1
+            found[name] = Loss(name, versions[last].release.version, removed, deprecated)
 
     shares = Counter(loss.name.rpartition(".")[0] for loss in found.values() if not loss.removed_in)
 
@@ -375,6 +374,20 @@ def find_losses(versions: Sequence[OfferedNames]) -> list[Loss]:
         return not loss.removed_in and shares[loss.name.rpartition(".")[0]] > _MANY
 
     return [loss for loss in found.values() if not is_told(loss)]
+
+
+def _find_loss(versions: Sequence[OfferedNames], name: str, has: int) -> int:
+    """The place of the first version that surely lacks a name, where the newest does; as many as there are for none.
+    Two in a row count though it cannot be known of later ones, whose module has a `__getattr__`. has: the place of the
+    last version that has the name."""
+    lacking = [version.lacks(name, versions[has]) for version in versions[has + 1 :]]
+    if not lacking or not lacking[-1]:
+        return len(versions)
+    twice = next((place for place, both in enumerate(pairwise(lacking)) if all(both)), len(lacking))
+    last = len(lacking) - 1
+    while last and lacking[last - 1]:
+        last -= 1
+    return has + 1 + min(twice, last)
 
 
 def group_losses(library: str, project: str, losses: Iterable[Loss]) -> list[dict[str, Any]]:

@@ -96,11 +96,26 @@ def test_a_loss_is_told_from_the_version_on_that_surely_lacks_it(tmp_path):
     assert list_losses(tmp_path, *versions[:2], {INIT: "import os"}) == {"arm.move": ("1.2", "1.1")}
     (loss,) = find_losses([OfferedNames(make_release(tmp_path, f"1.{n}", v)) for n, v in enumerate(versions)])
     # It may not have been deprecated at last.
-    assert loss == ("arm.move", "1.2", "1.3", "")
+    assert loss == ("arm.move", "1.1", "1.3", "")
     (group,) = group_losses("arm", "arm", [loss])
     assert {key: group[key] for key in ("last_in", "removed_in", "names")} == {
-        "last_in": "1.2", "removed_in": "1.3", "names": {"arm.move": ""}
+        "last_in": "1.1", "removed_in": "1.3", "names": {"arm.move": ""}
     }  # fmt: skip
+
+
+def test_versions_of_which_nothing_is_known_hide_no_earlier_loss(tmp_path):
+    there, gone = {INIT: "def move(): ..."}, {INIT: "import os"}
+    unknown = {INIT: "def __getattr__(name): return load(name)"}
+
+    def tell(*versions):
+        read = [OfferedNames(make_release(tmp_path, f"1.{n}", files)) for n, files in enumerate(versions)]
+        return [(loss.last_in, loss.removed_in) for loss in find_losses(read)]
+
+    assert tell(there, gone, gone, unknown, gone) == [("1.0", "1.1")]
+    # A version alone is not enough, and the newest has to lack it.
+    assert tell(there, gone, unknown, gone) == [("1.0", "1.3")]
+    assert tell(there, gone, gone, unknown) == []
+    assert tell(there, gone, gone, unknown, there) == []
 
 
 def test_versions_between_are_read_where_something_went(tmp_path):

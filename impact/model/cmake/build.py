@@ -187,12 +187,15 @@ class ReadFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class CMakeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A command called that nothing in the tree or in CMake itself defines (`ament_add_gtest`, `catkin_add_nosetests`),
     a variable read that nothing sets (`Eigen3_INCLUDE_DIR`), or something known that not every version of CMake or not
-    every machine has. kind: `command`, `variable`, `unset`, `feature` or `environment`.
+    every machine has. kind: `command`, `variable`, `unset`, `feature`, `dropped`, `old policy`, `policies` or
+    `environment`.
     for variable, context is the command it is read in; `unset` is a variable that install() reads and that nothing can
     have set; for a command of one of CMake's modules, the module that would
     have to be included or found first (`FindPkgConfig` for `pkg_check_modules`); for a `feature`, which is a command,
-    module or policy of CMake itself, the version that brought it; an `environment` is a variable that ros_environment
-    sets, read by a test. alike: of a variable that nothing can have set, one
+    module or policy of CMake itself, the version that brought it; for a `dropped` command or module the policy that is
+    NEW there and takes it away; for an `old policy`, set to OLD, the version that refuses that; `policies` are those of
+    the version `name`, which a file of a subdirectory or cmake_policy() asks for; an `environment` is a variable that
+    ros_environment sets, read by a test. alike: of a variable that nothing can have set, one
     that is set there and has one word more or less in its name. makes: of a command, what it may make: its first
     argument, and its DESTINATION."""
 
