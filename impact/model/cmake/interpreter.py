@@ -1255,12 +1255,18 @@ class Interpreter:
         return draft
 
     def refuse(
-        self, kind: str, name: Word, conditions: tuple[Condition, ...] = (), patterns: Sequence[str] = ()
+        self,
+        kind: str,
+        name: Word,
+        conditions: tuple[Condition, ...] = (),
+        patterns: Sequence[str] = (),
+        ways: Sequence[tuple[Condition, ...]] = (),
     ) -> None:
-        """Notes a name at which CMake stops. conditions: that it stops under besides those of the place."""
+        """Notes a name at which CMake stops. conditions: that it stops under besides those of the place. patterns,
+        ways: as of RefusedName."""
         if name.sure and "$<" not in name and not self.silent:
             conditions = merge(conditions, self.merge_with(name))
-            made = RefusedName(kind, str(name), self.locate(name.at), conditions, patterns=tuple(patterns))
+            made = RefusedName(kind, str(name), self.locate(name.at), conditions, tuple(ways), tuple(patterns))
             self.refused[made] = None
 
     @property
