@@ -219,13 +219,14 @@ class DependencyCall(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class RefusedName(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A name at which CMake stops. kind: `twice` (a target that is added a second time; conditions are those of both
-    times), `mixed` (a target that is linked with keywords and without), `no scope` (an argument that stands where
-    a command wants PUBLIC, PRIVATE or INTERFACE), `no target` (something is given to a target
-    that is not there yet, or never), `branch` (the same, where it is there under one of `ways` alone, the conditions of
-    what makes it), `branch sources` (a target whose sources, `patterns`, are there under one of `ways`
-    alone), `project` (catkin_package() or ament_package() finds another name in package.xml than that of the project), `version` (project() is given a version under the policies of a CMake before 3.0), `no value` (a property
-    of set_target_properties() whose value is a variable that nothing sets), `no sources` (a library or executable of
+    """A name at which CMake stops. kind: `twice` (a target that is added a second time; conditions are those of
+    both times), `mixed` (a target that is linked with keywords and without), `no scope` (an argument that stands
+    where a command wants PUBLIC, PRIVATE or INTERFACE), `no target` (something is given to a target that is not
+    there yet, or never), `branch` (the same, where it is there under one of `ways` alone, the conditions of what
+    makes it), `branch sources` (a target whose sources, `patterns`, are there under one of `ways` alone), `project`
+    (catkin_package() or ament_package() finds another name in package.xml than that of the project), `version`
+    (project() is given a version under the policies of a CMake before 3.0), `no value` (a property of
+    set_target_properties() whose value is a variable that nothing sets), `no sources` (a library or executable of
     what file(GLOB) finds with `patterns`, which is nothing), `late` (a macro that has to come before
     catkin_package()), `unguarded` (a command for tests that is called although tests may be switched off)."""
 

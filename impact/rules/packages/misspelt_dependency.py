@@ -2,9 +2,9 @@
 
 What it does
     Reports names in a manifest that neither rosdep nor any distro knows, where a key installs the package of Debian,
-    CMake or pkg-config that is called so, where they name the Debian package of a package of ROS, where the name is one edit away from a known one, is that of a repository
-    whose packages are called after it, of a target of the package itself, of a module of Python's standard library that
-    the package imports, or of a build type.
+    CMake or pkg-config that is called so, where the name is that of the Debian package of a package of ROS, is one edit
+    away from a known one, is that of a repository whose packages are called after it, of a target of the package
+    itself, of a module of Python's standard library that the package imports, or of a build type.
 
 Why it breaks
     `rosdep install` stops with "Cannot locate rosdep definition for [x]", and bloom refuses to release the package.
