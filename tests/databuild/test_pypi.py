@@ -3,7 +3,15 @@
 import zipfile
 
 import pytest
-from rosimpact.databuild.pypi import OfferedNames, find_losses, group_losses, read_versions, read_wheel
+from rosimpact.databuild.pypi import (
+    MovedNames,
+    OfferedNames,
+    find_losses,
+    group_losses,
+    group_moved,
+    read_versions,
+    read_wheel,
+)
 
 
 def make_release(folder, version, files):
@@ -116,6 +124,18 @@ def test_versions_of_which_nothing_is_known_hide_no_earlier_loss(tmp_path):
     assert tell(there, gone, unknown, gone) == [("1.0", "1.3")]
     assert tell(there, gone, gone, unknown) == []
     assert tell(there, gone, gone, unknown, there) == []
+
+
+def test_names_that_a_module_lost_before_all_wheels(tmp_path):
+    files = {
+        "arm/gui.pyi": "class Icon: ...\nclass Kept: ...",
+        "arm/widgets.pyi": "class Button: ...\nclass Kept: ...\nOLD_SIGNAL = 1\ndef make(): ...",
+        "arm/other.pyi": "class Table: ...",
+    }
+    release = OfferedNames(make_release(tmp_path, "5.1", files))
+    group = group_moved("arm5", MovedNames("arm", "arm.gui", ("arm.widgets",), "5.0", "its guide"), release)
+    assert (group["package"], group["removed_in"], group["source"]) == ("arm5", "5.0", "its guide")
+    assert group["names"] == {"arm.gui.Button": "arm.widgets.Button"}
 
 
 def test_versions_between_are_read_where_something_went(tmp_path):
