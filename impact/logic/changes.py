@@ -229,10 +229,13 @@ def _compare_statements(
     first, second = one.statement, other.statement
     old_shown, new_shown = _format_ways(first.ways, first), _format_ways(second.ways, second)
     if collect_conditions(first, names) != collect_conditions(second):
-        why = _explain_never_runs(second)
-        if why and not _explain_never_runs(first):
-            found = _make_change("tightened", other, outlets, old_shown, new_shown, why)
+        was, why = _explain_never_runs(first), _explain_never_runs(second)
+        if why and not was:
+            found = _make_change("tightened", other, outlets, old_shown, new_shown, f"never runs, {why}")
             yield msgspec.structs.replace(found, unreachable=True)
+            return
+        if was and not why:
+            yield _make_change("widened", other, outlets, old_shown, new_shown, f"never ran before: {was}")
             return
     whole = not _cut_off(first) and not _cut_off(second)
     unseen = _find_unseen(first, second, names) if whole else frozenset()
@@ -285,9 +288,9 @@ def _explain_never_runs(statement: PublishStatement) -> str:
     speech: guards.Language = "python" if statement.language == "python" else "cpp"
     whys: list[str] = []
     for way in statement.ways:
-        why = next((f"never runs, it stands {gate.text}" for gate in way.gates if gate.kind == "never"), "")
+        why = next((f"it stands {gate.text}" for gate in way.gates if gate.kind == "never"), "")
         if not why:
-            sides = [[gate] for gate in way.gates if gate.kind in ("if", "unless")]
+            sides = [[gate] for gate in way.gates if gate.kind in ("if", "unless", "cpp")]
             functions = dict.fromkeys(gate.of for gate in way.gates)
             sides += [[gate for gate in way.gates if gate.fixed and gate.of == of] for of in functions]
             at_once = next((side for side in sides if side and _contradicts(side, speech)), None)
@@ -297,7 +300,7 @@ def _explain_never_runs(statement: PublishStatement) -> str:
                 fewer = [one for one in at_once if one is not gate]
                 at_once = fewer if fewer and _contradicts(fewer, speech) else at_once
             texts = " and ".join(dict.fromkeys(f"`{_write_gate(gate, speech == 'python')}`" for gate in at_once))
-            why = f"never runs, {texts} cannot hold"
+            why = f"{texts} cannot hold"
         whys.append(why)
     return "" if _cut_off(statement) else "; ".join(dict.fromkeys(whys))
 

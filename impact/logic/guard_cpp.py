@@ -98,6 +98,23 @@ def loop(head: str) -> GuardReading:
     return GuardReading((Conjunct(f"for ({head})" if match is None else head, element),), tuple(names))
 
 
+def _make_contained(owner: Term, key: Term) -> Term:
+    """That a container has a key."""
+    return compare("<", Term("whole", "0"), Term("call", "", (make_member(owner, "count"), key)))
+
+
+def _compare(operator: str, left: Term, right: Term) -> Term:
+    """A comparison; `m.find(key) != m.end()` says that the container has it."""
+    if operator in ("==", "!="):
+        for one, end in ((left, right), (right, left)):
+            if one.kind == end.kind == "call" and len(one.parts) == 2 and len(end.parts) == 1:
+                (owner, found), (other, last) = split_owner(one.parts[0]), split_owner(end.parts[0])
+                if owner is not None and owner == other and found == "find" and last in ("end", "cend"):
+                    contained = _make_contained(owner, one.parts[1])
+                    return contained if operator == "!=" else negate(contained)
+    return compare(operator, left, right)
+
+
 class _Reader:
     """Reads the tree of one condition. names: variables that the condition makes."""
 
@@ -231,7 +248,7 @@ class _Reader:
                 return self.make_opaque(node)
             right = self.parse_term(operands[position], depth)
             if operator in FLIPPED:
-                result = compare(operator, result, right)
+                result = _compare(operator, result, right)
             elif operator in ("+", "-", "*"):
                 result = Term(operator, "", (result, right))
             else:
@@ -292,6 +309,9 @@ class _Reader:
                     return compare("==", Term("size", "", (owner,)), Term("whole", "0"))
                 if method == "has_value":
                     return Term("truth", "", (owner,))
+        owner, method = split_owner(function) if len(arguments) == 1 else (None, "")
+        if owner is not None and method == "contains":
+            return _make_contained(owner, arguments[0])
         return Term("call", "", (function, *arguments))
 
     def find_cast_type(self, called: Any) -> str | None:

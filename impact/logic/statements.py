@@ -19,7 +19,7 @@ from ..model.flow.nodes import BuiltPackage, asks_for_name, find_entry_point
 from ..model.flow.qos import find_qos
 from ..model.flow.values import FlowValue
 from .history import PackageFile, PackageState
-from .meaning import Meaning, split_conjuncts
+from .meaning import Given, Meaning, split_conjuncts
 
 _LIVE = frozenset(
     ("ros::ok()", "rclcpp::ok()", "ok()", "true", "True", "1", "rclpy.ok()", "not rospy.is_shutdown()",
@@ -281,6 +281,7 @@ class _Digester:
         unsaid = trigger.kind in ("start", "unknown")
         unled = trigger.kind == "unknown" or (trigger.kind == "start" and trigger.detail not in ("", "main"))
         gates: list[Gate] = []
+        given = self._list_given(way, fn)
         for place, guard in enumerate(guards):
             asked, lives = _strip_liveness(guard.text) if guard.kind in _LOOPS else (guard.text, False)
             loops = any(one.kind in _LOOPS for one in guards[:place])
@@ -290,11 +291,24 @@ class _Digester:
                 kind = "loop" if trigger.kind == "start" else "thread"
                 start = StatementStart(kind, self._find_rate(guard) or (start.detail if start.kind == kind else ""))
             if asked:
-                meaning = self.meaning.resolve_guard(guard) if asked == guard.text else ""
+                known = given.get((guard.path, guard.of), ())
+                meaning = self.meaning.resolve_guard(guard, known) if asked == guard.text else ""
                 gates.append(Gate(guard.kind, asked, guard.of, meaning, self._is_fixed(guard)))
         if start.kind in ("start", "unknown"):
             start = StatementStart(start.kind)
         return Path(start, tuple(gates), self._find_root(trigger) if unled else "", way.functions)
+
+    def _list_given(self, way: CallWay, fn: Fn) -> dict[tuple[str, str], Given]:
+        """What the parameters of functions are on a way, as far as guards ask for them; by path and name."""
+        found: dict[tuple[str, str], Given] = {}
+        known: Given = ()
+        for (caller, call), callee in zip(way.steps, [*(one for one, _ in way.steps[1:]), fn], strict=False):
+            if call is not None:
+                asked = self.join.list_asked_parameters(callee)
+                known = self.meaning.resolve_arguments(call, caller, callee, asked, known) if asked else ()
+            if known:
+                found[callee.source.path, callee.name] = known
+        return found
 
     def _find_root(self, trigger: Trigger) -> str:
         """The whole name of the function that a way begins in."""
