@@ -21,6 +21,7 @@ from .match import (
     match_statements,
     normalize,
 )
+from .periods import parse_period
 from .statements import Gate, Outlet, PackageStatements, Path, PublishStatement, StatementStart
 
 Kind = Literal["tightened", "widened", "equivalent", "changed", "new", "gone", "trigger changed"]
@@ -464,6 +465,10 @@ def _group_starts(statement: PublishStatement, names: Renames) -> dict[tuple[str
 
 def _normalize_detail(detail: str) -> str:
     """A period or name without what spelling alone decides."""
+    word, _, paced = detail.partition(" ")
+    period = parse_period(paced if word in ("every", "rate") else detail)
+    if period is not None:
+        return f"{word} {period}" if word in ("every", "rate") else f"{period}"
     text = "".join(detail.split()).replace("this->", "").replace("this.", "")
     return text.strip("/") if "/" in text else text
 

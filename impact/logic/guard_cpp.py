@@ -31,6 +31,8 @@ _INTEGERS = frozenset(("int", "long", "short", "unsigned", "signed", "char", "si
 _WHOLE_TYPE = re.compile(r"(?:std::)?u?int(?:_fast|_least)?\d*_t|(?:std::)?s?size_t")
 _PASSED_ON = frozenset(("std::move", "std::as_const", "std::forward", "std::ref", "std::cref"))
 _ABSOLUTE = frozenset(("abs", "std::abs", "fabs", "std::fabs", "fabsf"))
+_MATH = frozenset(f"std::{name}" for name in ("isnan", "isinf", "isfinite", "min", "max", "sqrt", "pow", "hypot", "round",
+                                              "floor", "ceil", "fmod", "atan2", "signbit"))  # fmt: skip
 _SUFFIX = re.compile(r"(?<=[\d.])[uUlLfFzZ]+$")
 _DURATION = re.compile(r"([\d.']+)(h|min|s|ms|us|ns)$")
 _SECONDS = {"h": "3600", "min": "60", "s": "1", "ms": "1e-3", "us": "1e-6", "ns": "1e-9"}
@@ -270,7 +272,7 @@ class _Reader:
         text = re.sub(r"\s+", "", self.join_tokens(node)).removeprefix("::")
         if text in ("std::nullopt", "nullopt", "boost::none"):
             return NULL
-        return Term("name", text)
+        return Term("name", text.removeprefix("std::") if text in _MATH else text)
 
     read_qualified_identifier = read_template_function = read_identifier
 
@@ -309,6 +311,8 @@ class _Reader:
                     return compare("==", Term("size", "", (owner,)), Term("whole", "0"))
                 if method == "has_value":
                     return Term("truth", "", (owner,))
+                if method == "load":
+                    return owner  # of an atomic
         owner, method = split_owner(function) if len(arguments) == 1 else (None, "")
         if owner is not None and method == "contains":
             return _make_contained(owner, arguments[0])

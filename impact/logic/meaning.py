@@ -10,8 +10,10 @@ from functools import cached_property
 from ...edges.memory import cache_method
 from ..facts.flow import Assignment, DataMember, FlowCall, FlowExpr
 from ..model.flow.code import FlowCode, Fn, Variable, find_argument, get_tail
+from ..model.flow.endpoints import unparse
 from ..model.flow.graph import GuardAt
 from .guard_terms import split_outside
+from .periods import parse_period
 
 _DEEPEST = 3
 _LONGEST = 1000
@@ -25,7 +27,7 @@ _OBJECT = re.compile(r"(?:this->)?[A-Za-z_][\w.:]*(?:->\w+)*(?:\([^()]*\))?")
 _FOLLOWS = re.compile(r"\.|->|\[")
 _UNNAMED = re.compile(r"\[\]|lambda|\{")
 _MAY_BE_CONSTANT = re.compile(r"k[A-Z]\w*|[A-Z][A-Z\d_]*|\w*[A-Z]\w*")
-_NUMBER = re.compile(r"-?[\d.]")
+_NUMBER = re.compile(r"-?[\d.][\w.]*")
 _LITERALS = frozenset(("true", "false", "True", "False", "None", "nullptr", "NULL"))
 _NOTHING = frozenset(("None", "nullptr", "NULL", "std::nullopt", "boost::none"))
 _OPTIONAL = re.compile(r"\boptional\s*<")
@@ -37,6 +39,8 @@ _WORDS = frozenset(
     ("and", "or", "not", "is", "in", "true", "false", "True", "False", "None", "nullptr", "NULL", "this")
 )  # fmt: skip
 
+PARAMETER = "__parameter"
+"""What stands between the name of a parameter and its place."""
 Given = tuple[tuple[str, str], ...]
 """Parameters of a function, each with what it is."""
 Asked = tuple[tuple[int, str], ...]
@@ -52,12 +56,31 @@ class Meaning:
     @cache_method
     def resolve_guard(self, guard: GuardAt, given: Given = ()) -> str:
         """What a guard's text means; empty when that is what it says. given: what parameters of its function are."""
-        if guard.kind not in ("if", "unless", "while"):
+        if guard.kind == "for":
+            found = _put_given(guard.text, given)
+            return found if found != guard.text else ""
+        if guard.kind not in ("if", "unless", "while", "case"):
             return ""
         fn = self.code.by_name.get((guard.path, guard.of))
         found = self._expand_text(guard.text, fn, 0, guard.line) if fn is not None else guard.text
         found = _put_given(found, given)
         return found if found != guard.text and len(found) <= _LONGEST else ""
+
+    def resolve_text(self, text: str, fn: Fn, line: int) -> str:
+        """What an expression at a line of a function means."""
+        found = self._expand_text(text, fn, 0, line)
+        return found[1:-1] if found[:1] == "(" and _find_closing(found, 0) == len(found) - 1 else found
+
+    @cache_method
+    def mark_parameters(self, fn: Fn) -> Given:
+        """The parameters of a function that something outside the code calls, each with its place behind the name: what
+        they are called does not matter."""
+        rows = fn.facts.parameters
+        return tuple(
+            (one.name, f"{one.name}{PARAMETER}{place}")
+            for place, one in enumerate(rows)
+            if one.name.isidentifier() and one.name not in fn.assigned
+        )
 
     def resolve_arguments(self, call: FlowCall, caller: Fn, callee: Fn, asked: Asked, given: Given) -> Given:
         """What parameters of a function are on a call. asked: their places and names; given: what those of the caller
@@ -196,12 +219,12 @@ class Meaning:
             rows = self.code.list_constants(variable, fn)
         else:
             return None
-        values = {one.value.text for one, _ in rows if one.value is not None and one.value.kind == "number"}
+        values = {unparse(one.value) for one, _ in rows if one.value is not None}
         fixed = all(_is_fixed(one, python) for one, _ in rows)
         if len(values) != 1 or len(rows) != 1 or not fixed or len(self.code.list_writes(variable)) > python:
             return None
         value = values.pop()
-        return value if _NUMBER.match(value) else None
+        return value if _NUMBER.fullmatch(value) or parse_period(value) is not None else None
 
     def _expand_predicate(self, callee: str, arguments: str, fn: Fn, depth: int) -> str | None:
         """What a function of the code returns, when returning is all that it does; of the object it is called on."""

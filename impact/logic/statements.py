@@ -20,6 +20,7 @@ from ..model.flow.qos import find_qos
 from ..model.flow.values import FlowValue
 from .history import PackageFile, PackageState
 from .meaning import Given, Meaning, split_conjuncts
+from .periods import parse_period
 
 _LIVE = frozenset(
     ("ros::ok()", "rclcpp::ok()", "ok()", "true", "True", "1", "rclpy.ok()", "not rospy.is_shutdown()",
@@ -277,7 +278,7 @@ class _Digester:
 
     def _build_path(self, way: CallWay, fn: Fn, own: tuple[GuardAt, ...]) -> Path:
         trigger, guards = self._find_trigger(way, fn), (*way.guards, *own)
-        start = StatementStart(trigger.kind, trigger.detail)
+        start = StatementStart(trigger.kind, self._find_period(trigger) or trigger.detail)
         unsaid = trigger.kind in ("start", "unknown")
         unled = trigger.kind == "unknown" or (trigger.kind == "start" and trigger.detail not in ("", "main"))
         gates: list[Gate] = []
@@ -298,10 +299,21 @@ class _Digester:
             start = StatementStart(start.kind)
         return Path(start, tuple(gates), self._find_root(trigger) if unled else "", way.functions)
 
+    @cache_method
+    def _find_period(self, trigger: Trigger) -> str:
+        """The period of a timer that is written with names, where these stand for a number; empty otherwise."""
+        if trigger.kind != "timer" or parse_period(trigger.detail) is not None:
+            return ""
+        functions = self.join.code.functions_in.get(trigger.path, ())
+        maker = next((fn for fn in functions if any(call.line == trigger.line for call in fn.facts.calls)), None)
+        meant = self.meaning.resolve_text(trigger.detail, maker, trigger.line) if maker is not None else ""
+        return meant if parse_period(meant) is not None else ""
+
     def _list_given(self, way: CallWay, fn: Fn) -> dict[tuple[str, str], Given]:
         """What the parameters of functions are on a way, as far as guards ask for them; by path and name."""
-        found: dict[tuple[str, str], Given] = {}
-        known: Given = ()
+        root = way.steps[0][0] if way.steps else fn
+        known = self.meaning.mark_parameters(root)
+        found = {(root.source.path, root.name): known}
         for (caller, call), callee in zip(way.steps, [*(one for one, _ in way.steps[1:]), fn], strict=False):
             if call is not None:
                 asked = self.join.list_asked_parameters(callee)
