@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from typing import Literal, NamedTuple
 
 import msgspec
@@ -21,6 +22,7 @@ from .match import (
     match_statements,
     normalize,
 )
+from .meaning import PARAMETER, put_given
 from .periods import parse_period
 from .statements import Gate, Outlet, PackageStatements, Path, PublishStatement, StatementStart
 
@@ -107,7 +109,7 @@ def _list_stamps(side: Side) -> tuple[list[str], list[str]]:
     statements, outlets = [], []
     for at in side.list_statements():
         statement = at.statement
-        ways = sorted(repr((way.start, [(g.kind, g.text, g.meaning) for g in way.gates])) for way in statement.ways)
+        ways = sorted(repr((way.start, [(g.kind, g.text, g.meaning, g.given) for g in way.gates])) for way in statement.ways)
         topics, kinds = sorted(at.topics), statement.type
         statements.append(
             repr((at.path, statement.function, statement.variable, topics, statement.expression, kinds, ways))
@@ -227,7 +229,8 @@ def _compare_statements(
     if moved and not heirs & {id(outlet) for outlet in other.outlets}:
         was, is_now = ", ".join(sorted(one.topics)), ", ".join(sorted(other.topics))
         yield _make_change("changed", other, outlets, was, is_now, f"published on `{is_now}`, was `{was}`")
-    first, second = one.statement, other.statement
+    first, second = _drop_impossible(one.statement), _drop_impossible(other.statement)
+    names = _add_publisher(first, second, names)
     old_shown, new_shown = _format_ways(first.ways, first), _format_ways(second.ways, second)
     if collect_conditions(first, names) != collect_conditions(second):
         was, why = _explain_never_runs(first), _explain_never_runs(second)
@@ -282,6 +285,27 @@ def _compare_statements(
         yield _make_change(kind, other, outlets, old_shown, new_shown, why)
     elif collect_conditions(first, names) != collect_conditions(second):
         yield _make_change("equivalent", other, outlets, old_shown, new_shown, "says the same in other words")
+
+
+def _add_publisher(first: PublishStatement, second: PublishStatement, names: Renames) -> Renames:
+    """Names with that of the publisher, where it is called otherwise now."""
+    was, is_now = get_tail(first.variable), get_tail(second.variable)
+    if not was or was == is_now or was in names.words or not was.isidentifier() or not is_now.isidentifier():
+        return names
+    return names._replace(words={**names.words, was: is_now})
+
+
+def _drop_impossible(statement: PublishStatement) -> PublishStatement:
+    """A statement without ways on which a parameter is given what its guard does not let through, if others are left."""
+    speech: guards.Language = "python" if statement.language == "python" else "cpp"
+    left = tuple(way for way in statement.ways if not any(_is_shut(gate, speech) for gate in way.gates))
+    return msgspec.structs.replace(statement, ways=left) if left and left != statement.ways else statement
+
+
+@lru_cache(4096)
+def _is_shut(gate: Gate, speech: guards.Language) -> bool:
+    given = [value for _, value in gate.given if PARAMETER not in value]
+    return bool(given) and guards.is_impossible(_build_guard_ways([Path(StatementStart("unknown"), (gate,))], 2)[0], speech)
 
 
 def _explain_never_runs(statement: PublishStatement) -> str:
@@ -380,26 +404,31 @@ def _compare_guards(old: Sequence[Path], new: Sequence[Path], names: Renames, la
     """What happened to the guards of some ways, and the clause that says it. Names for conditions are put back into the
     conditions first; where that is more than can be compared, what is written decides."""
     speech: guards.Language = "python" if language == "python" else "cpp"
-    meant_old, meant_new = _build_guard_ways(old, meant=True), _build_guard_ways(new, meant=True)
-    written_old, written_new = _build_guard_ways(old), _build_guard_ways(new)
     reading = guards.NameReading(names.words, speech)
-    kind = guards.compare_ways(meant_old, meant_new, reading)
-    reported = (meant_old, meant_new)
-    if (meant_old, meant_new) != (written_old, written_new) and kind != "equivalent":
-        written = guards.compare_ways(written_old, written_new, reading)
-        if (
-            written == "equivalent"
-            and kind == "changed"
-            and _collect_condition_names(meant_old, names) == _collect_condition_names(meant_new, SAME)
-        ):
-            return "equivalent", ""  # what is asked is called otherwise, of the same things
-        if written != "equivalent":
-            reported = (written_old, written_new)
-            kind = written if kind == "changed" else kind
-    if kind != "equivalent" and _count_loops(old) != _count_loops(new):
-        # A loop that comes or goes is a matter of how often, too.
-        return "changed", guards.explain_ways(*reported, reading)
-    return kind, guards.explain_ways(*reported, reading) if kind != "equivalent" else ""
+    written, meant, known = ((_build_guard_ways(old, depth), _build_guard_ways(new, depth)) for depth in (0, 1, 2))
+    kind = guards.compare_ways(*known, reading)
+    if kind == "equivalent":
+        return kind, ""
+    kinds = {pair: guards.compare_ways(*pair, reading) for pair in (written, meant, known)}
+    if (
+        kinds[written] == "equivalent"
+        and kind == "changed"
+        and _collect_condition_names(known[0], names) == _collect_condition_names(known[1], SAME)
+    ):
+        return "equivalent", ""  # what is asked is called otherwise, of the same things
+    if kind == "changed" and kinds[written] != "equivalent" and _means_same(old, new):
+        kind = kinds[written]
+    if _count_loops(old) != _count_loops(new):
+        kind = "changed"  # a loop that comes or goes is a matter of how often, too
+    clauses = [guards.explain_ways(*pair, reading) for pair in (written, meant) if kinds[pair] != "equivalent"]
+    return kind, min(clauses, key=len) if clauses else guards.explain_ways(*known, reading)
+
+
+def _means_same(old: Sequence[Path], new: Sequence[Path]) -> bool:
+    """Whether what is written on both sides means the same on both."""
+    sides = ({gate.text: (gate.meaning, gate.given) for way in ways for gate in way.gates} for ways in (old, new))
+    before, after = sides
+    return all(after.get(text, meaning) == meaning for text, meaning in before.items())
 
 
 def _count_loops(ways: Sequence[Path]) -> set[int]:
@@ -407,11 +436,17 @@ def _count_loops(ways: Sequence[Path]) -> set[int]:
     return {sum(gate.kind in ("while", "for", "do") for gate in way.gates) for way in ways}
 
 
-def _build_guard_ways(ways: Iterable[Path], meant: bool = False) -> Ways:
+def _build_guard_ways(ways: Iterable[Path], depth: int = 0) -> Ways:
+    """The guards of ways. depth: 0 as written, 1 with names put back, 2 with parameters as what they are, too."""
     return tuple(
-        tuple(GuardAt(gate.kind, (meant and gate.meaning) or gate.text, "", 0, gate.of) for gate in way.gates)
-        for way in ways
+        tuple(GuardAt(gate.kind, _write_at(gate, depth), "", 0, gate.of) for gate in way.gates) for way in ways
     )
+
+
+def _write_at(gate: Gate, depth: int) -> str:
+    text = (depth and gate.meaning) or gate.text
+    marked = tuple(one for one in gate.given if depth == 2 or PARAMETER in one[1])
+    return put_given(text, marked if depth else ()) if marked else text
 
 
 def _collect_condition_names(ways: Ways, names: Renames) -> set[tuple[str, ...]]:

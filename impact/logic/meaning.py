@@ -21,6 +21,7 @@ _CUT = 119
 """An expression as long as this may have been cut off when it was read."""
 _IDENTIFIER = re.compile(r"(?<![\w.>:\"'])(?:(?:this->|self\.)?)([A-Za-z_]\w*)(?![\w:\"'])")
 _PATH = re.compile(r"(?:this->|self\.)?[A-Za-z_]\w*(?:(?:\.|->)[A-Za-z_]\w*)+(?=\()")
+_WORD = re.compile(r"[A-Za-z_]\w*")
 _CALL = re.compile(r"\w\s*\(")
 _PLAIN = re.compile(r"[\w.:]+(\(\))?")
 _OBJECT = re.compile(r"(?:this->)?[A-Za-z_][\w.:]*(?:->\w+)*(?:\([^()]*\))?")
@@ -54,16 +55,12 @@ class Meaning:
         self.code = code
 
     @cache_method
-    def resolve_guard(self, guard: GuardAt, given: Given = ()) -> str:
-        """What a guard's text means; empty when that is what it says. given: what parameters of its function are."""
-        if guard.kind == "for":
-            found = _put_given(guard.text, given)
-            return found if found != guard.text else ""
+    def resolve_guard(self, guard: GuardAt) -> str:
+        """What a guard's text means; empty when that is what it says."""
         if guard.kind not in ("if", "unless", "while", "case"):
             return ""
         fn = self.code.by_name.get((guard.path, guard.of))
         found = self._expand_text(guard.text, fn, 0, guard.line) if fn is not None else guard.text
-        found = _put_given(found, given)
         return found if found != guard.text and len(found) <= _LONGEST else ""
 
     def resolve_text(self, text: str, fn: Fn, line: int) -> str:
@@ -96,7 +93,7 @@ class Meaning:
             text = format_expression(value, python, fn, call.line) if value is not None else None
             if not text or _UNNAMED.search(text):
                 continue
-            text = _put_given(self._expand_text(text, caller, 1, call.line), given) if fn is caller else text
+            text = put_given(self._expand_text(text, caller, 1, call.line), given) if fn is caller else text
             if len(text) <= _LONGEST_GIVEN:
                 found.append((name, text if _PLAIN.fullmatch(text) else f"({text})"))
         return tuple(found)
@@ -348,10 +345,17 @@ def _find_shared(chains: Sequence[list[tuple[str, str]]]) -> list[tuple[str, str
     return shared
 
 
-def _put_given(text: str, given: Given) -> str:
+def put_given(text: str, given: Given) -> str:
+    """A text with parameters as what they are."""
     for name, value in given:
         text = re.sub(rf"(?<![\w.>:\"']){re.escape(name)}(?![\w\"':])", lambda _, value=value: value, text)
     return text
+
+
+def select_given(text: str, given: Given) -> Given:
+    """Those of some parameters that a text names."""
+    words = set(_WORD.findall(text)) if given else ()
+    return tuple(one for one in given if one[0] in words)
 
 
 def _is_fixed(member: DataMember, python: bool) -> bool:

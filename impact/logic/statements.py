@@ -19,7 +19,7 @@ from ..model.flow.nodes import BuiltPackage, asks_for_name, find_entry_point
 from ..model.flow.qos import find_qos
 from ..model.flow.values import FlowValue
 from .history import PackageFile, PackageState
-from .meaning import Given, Meaning, split_conjuncts
+from .meaning import Given, Meaning, select_given, split_conjuncts
 from .periods import parse_period
 
 _LIVE = frozenset(
@@ -45,6 +45,7 @@ class Gate(msgspec.Struct, frozen=True, array_like=True, gc=False):
     of: str
     meaning: str = ""
     fixed: bool = False
+    given: Given = ()
 
 
 class StatementStart(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -292,9 +293,9 @@ class _Digester:
                 kind = "loop" if trigger.kind == "start" else "thread"
                 start = StatementStart(kind, self._find_rate(guard) or (start.detail if start.kind == kind else ""))
             if asked:
-                known = given.get((guard.path, guard.of), ())
-                meaning = self.meaning.resolve_guard(guard, known) if asked == guard.text else ""
-                gates.append(Gate(guard.kind, asked, guard.of, meaning, self._is_fixed(guard)))
+                meaning = self.meaning.resolve_guard(guard) if asked == guard.text else ""
+                known = select_given(meaning or asked, given.get((guard.path, guard.of), ()))
+                gates.append(Gate(guard.kind, asked, guard.of, meaning, self._is_fixed(guard), known))
         if start.kind in ("start", "unknown"):
             start = StatementStart(start.kind)
         return Path(start, tuple(gates), self._find_root(trigger) if unled else "", way.functions)
