@@ -35,6 +35,7 @@ _UNLED = frozenset(("unknown", "thread"))
 """What leads to the statement is not known."""
 _LONGEST = 4000
 _ABOUT = re.compile(r"(?<![\w.])[A-Za-z_][\w:]*(?:\s*\()?|[<>=!]=?|&&|\|\|")
+_WORDS = re.compile(r"[A-Za-z_]\w*")
 _DENIED = re.compile(r"(?:!\s*|not )([\w.:]+(?:->[\w.]+)*(?:\([\w.,: ]*\))?)")
 
 
@@ -134,6 +135,7 @@ def changes(old: Side, new: Side, names: Renames = SAME) -> Iterator[LogicChange
                 gone = [at for at in gone if at not in merged]
                 come = [at for at in come if at not in merged]
                 said[place] = []
+    gone, come = _drop_repeated(pairs, gone, 0), _drop_repeated(pairs, come, 1)
     for found in said:
         yield from found
     lost, gained = old.list_unread(), new.list_unread()
@@ -180,6 +182,25 @@ def _find_merged(
         if some and is_same(one, _join_statements(other, some)):
             return some
     return []
+
+
+def _drop_repeated(
+    pairs: Sequence[tuple[StatementPlace, StatementPlace]], left: Sequence[StatementPlace], side: int
+) -> list[StatementPlace]:
+    """Statements of one side without those that a function of the other side, which is called once for each, has taken
+    up: they publish as often as before, under the same conditions. side: 0 for those that are gone."""
+    kept = list(left)
+    for pair in pairs:
+        ours, theirs = pair[side].statement, pair[1 - side].statement
+        more = sum(way.times for way in theirs.ways) - sum(way.times for way in ours.ways)
+        alike = [at for at in kept if _share_publisher(at, pair[side]) and _list_gates(at.statement) == _list_gates(ours)]
+        if len(theirs.ways) == len(ours.ways) and 0 < len(alike) * len(ours.ways) <= more:
+            kept = [at for at in kept if at not in alike]
+    return kept
+
+
+def _list_gates(statement: PublishStatement) -> frozenset[tuple]:
+    return frozenset((way.start, *((gate.kind, gate.text) for gate in way.gates)) for way in statement.ways)
 
 
 def _share_publisher(one: StatementPlace, other: StatementPlace) -> bool:
@@ -305,7 +326,7 @@ def _drop_impossible(statement: PublishStatement) -> PublishStatement:
 @lru_cache(4096)
 def _is_shut(gate: Gate, speech: guards.Language) -> bool:
     given = [value for _, value in gate.given if PARAMETER not in value]
-    return bool(given) and guards.is_impossible(_build_guard_ways([Path(StatementStart("unknown"), (gate,))], 2)[0], speech)
+    return bool(given) and guards.is_unlikely(GuardAt(gate.kind, _write_at(gate, 2), "", 0, gate.of), speech)
 
 
 def _explain_never_runs(statement: PublishStatement) -> str:
@@ -410,18 +431,27 @@ def _compare_guards(old: Sequence[Path], new: Sequence[Path], names: Renames, la
     if kind == "equivalent":
         return kind, ""
     kinds = {pair: guards.compare_ways(*pair, reading) for pair in (written, meant, known)}
-    if (
-        kinds[written] == "equivalent"
-        and kind == "changed"
-        and _collect_condition_names(known[0], names) == _collect_condition_names(known[1], SAME)
-    ):
-        return "equivalent", ""  # what is asked is called otherwise, of the same things
+    if kinds[written] == "equivalent":
+        same = _collect_condition_names(known[0], names) == _collect_condition_names(known[1], SAME)
+        if (kind == "changed" and same) or _resolves_more(old, new) or _resolves_more(new, old):
+            return "equivalent", ""  # what is asked is called otherwise, of the same things; or is known on one side
     if kind == "changed" and kinds[written] != "equivalent" and _means_same(old, new):
         kind = kinds[written]
     if _count_loops(old) != _count_loops(new):
         kind = "changed"  # a loop that comes or goes is a matter of how often, too
     clauses = [guards.explain_ways(*pair, reading) for pair in (written, meant) if kinds[pair] != "equivalent"]
     return kind, min(clauses, key=len) if clauses else guards.explain_ways(*known, reading)
+
+
+def _resolves_more(ways: Sequence[Path], others: Sequence[Path]) -> bool:
+    """Whether a name that is put back on some ways stands there as it is on others, in guards that are written alike."""
+    meant = {gate.text: gate for way in ways for gate in way.gates}
+    return any(
+        not {*meant[gate.text].names}.difference(gate.names).isdisjoint(_WORDS.findall(gate.meaning or gate.text))
+        for way in others
+        for gate in way.gates
+        if gate.text in meant
+    )
 
 
 def _means_same(old: Sequence[Path], new: Sequence[Path]) -> bool:

@@ -8,6 +8,7 @@ the two conditions. That calls have effects and that variables are assigned betw
 guards would then contradict each other: nothing but what stands in both is then known of them.
 """
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Literal, NamedTuple
 
@@ -21,6 +22,7 @@ from .guard_words import describe_ways
 Kind = Literal["tightened", "widened", "equivalent", "changed"]
 Guards = Sequence[GuardAt]
 Ways = Sequence[Guards]
+_WORDS_JOINED = re.compile(r"[._]")
 _Side = tuple[tuple[Conjunct, ...], ...]
 
 MILLISECONDS = 100
@@ -83,6 +85,15 @@ def is_impossible(guards: Guards, language: Language) -> bool:
         return False
 
 
+def is_unlikely(guard: GuardAt, language: Language) -> bool:
+    """Whether a guard cannot hold when different constants are different."""
+    pieces = collect_pieces([guard], language, {})
+    try:
+        return not Solver(language, MILLISECONDS).is_likely(_join_pieces(pieces))
+    except Undecided:
+        return False
+
+
 def _collect_texts(ways: Ways) -> frozenset[tuple[tuple[str, str], ...]]:
     return frozenset(tuple((guard.kind, guard.text) for guard in way) for way in ways)
 
@@ -101,7 +112,7 @@ def _follow_moves(before: _Side, after: _Side) -> _Side:
     """The old side with members named as the new one does that have moved into an object inside theirs, or out of one:
     `planner.ready` and `planner.state.ready`, where each side has but one of them."""
     before = _follow_getters(before, after)
-    was, is_now = _collect_paths(before), _collect_paths(after)
+    was, is_now = _collect_paths(before, after), _collect_paths(after, before)
     moves = _pair_constants(was - is_now, is_now - was)
     for old in was - is_now:
         new = [name for name in is_now - was if _is_moved(old, name)]
@@ -177,14 +188,20 @@ def _pair_constants(gone: frozenset[str], come: frozenset[str]) -> dict[str, str
     }
 
 
-def _collect_paths(side: _Side) -> frozenset[str]:
+def _collect_paths(side: _Side, other: _Side) -> frozenset[str]:
+    """The paths of a side, and names that have the words of a path of the other side."""
+    sides = [{name for way in one for piece in way for name in list_names(piece.term)} for one in (side, other)]
+    joined = {_WORDS_JOINED.sub("", name) for name in sides[1] if "." in name}
     return frozenset(
-        name for way in side for piece in way for name in list_names(piece.term) if "." in name or "::" in name
+        name for name in sides[0] if "." in name or "::" in name or _WORDS_JOINED.sub("", name) in joined
     )
 
 
 def _is_moved(one: str, other: str) -> bool:
-    """Whether two paths begin and end alike, and one has all of the other besides."""
+    """Whether two paths begin and end alike, and one has all of the other besides; or have the same words, however
+    these are joined."""
+    if _WORDS_JOINED.sub("", one) == _WORDS_JOINED.sub("", other) and one.count(".") != other.count("."):
+        return True
     long, short = sorted((one.split("."), other.split(".")), key=len, reverse=True)
     if len(long) == len(short) or (long[0], long[-1]) != (short[0], short[-1]) or long[:2] == ["this", short[-1]]:
         return False

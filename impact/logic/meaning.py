@@ -30,6 +30,9 @@ _UNNAMED = re.compile(r"\[\]|lambda|\{")
 _MAY_BE_CONSTANT = re.compile(r"k[A-Z]\w*|[A-Z][A-Z\d_]*|\w*[A-Z]\w*")
 _NUMBER = re.compile(r"-?[\d.][\w.]*")
 _LITERALS = frozenset(("true", "false", "True", "False", "None", "nullptr", "NULL"))
+_EQUATED_AFTER = re.compile(r"\s*[!=]=")
+_EQUATED_BEFORE = re.compile(r"[!=]=\s*(?:[\w:.]*(?:::|\.|->))?$|\bcase\s*$")
+_CASE_MARKS = (" other than ", " == ")
 _NOTHING = frozenset(("None", "nullptr", "NULL", "std::nullopt", "boost::none"))
 _OPTIONAL = re.compile(r"\boptional\s*<")
 _BRANCHES = frozenset(("if", "unless"))
@@ -53,15 +56,20 @@ class Meaning:
 
     def __init__(self, code: FlowCode):
         self.code = code
+        # The names that were put back for the guard that is looked at, in order.
+        self._used: dict[str, None] = {}
 
     @cache_method
-    def resolve_guard(self, guard: GuardAt) -> str:
-        """What a guard's text means; empty when that is what it says."""
-        if guard.kind not in ("if", "unless", "while", "case"):
-            return ""
+    def resolve_guard(self, guard: GuardAt) -> tuple[str, tuple[str, ...]]:
+        """What a guard's text means, empty when that is what it says; and the names that were put back for it."""
         fn = self.code.by_name.get((guard.path, guard.of))
-        found = self._expand_text(guard.text, fn, 0, guard.line) if fn is not None else guard.text
-        return found if found != guard.text and len(found) <= _LONGEST else ""
+        if guard.kind not in ("if", "unless", "while", "case") or fn is None:
+            return "", ()
+        self._used.clear()
+        mark = next((mark for mark in _CASE_MARKS if mark in guard.text), "") if guard.kind == "case" else ""
+        asked, _, values = guard.text.partition(mark) if mark else (guard.text, "", "")
+        found = f"{self._expand_text(asked, fn, 0, guard.line)}{mark}{values}"
+        return (found, tuple(self._used)) if found != guard.text and len(found) <= _LONGEST else ("", ())
 
     def resolve_text(self, text: str, fn: Fn, line: int) -> str:
         """What an expression at a line of a function means."""
@@ -93,7 +101,9 @@ class Meaning:
             text = format_expression(value, python, fn, call.line) if value is not None else None
             if not text or _UNNAMED.search(text):
                 continue
-            text = put_given(self._expand_text(text, caller, 1, call.line), given) if fn is caller else text
+            constant = value is not None and value.kind == "name" and self._find_constant(text, fn) is not None
+            if fn is caller and not constant:
+                text = put_given(self._expand_text(text, caller, 1, call.line), given)
             if len(text) <= _LONGEST_GIVEN:
                 found.append((name, text if _PLAIN.fullmatch(text) else f"({text})"))
         return tuple(found)
@@ -123,10 +133,11 @@ class Meaning:
                 follows = _FOLLOWS.match(text, end)
                 if follows and (value is None or follows[0] == "[" or not _OBJECT.fullmatch(value)):
                     value = None
-            if value is None and not path and text[end - 1] != ")":
+            if value is None and not path and text[end - 1] != ")" and not _is_equated(text, match.start(), end):
                 value = self._find_constant(match[0], fn)
             if value is None:
                 continue
+            self._used[get_tail(text[match.start() : end].partition("(")[0].replace("->", "."))] = None
             parts += (text[position : match.start()], value)
             position = end
         return "".join((*parts, text[position:]))
@@ -252,7 +263,8 @@ class Meaning:
         python = fn.source.facts.language == "python"
         last = rows[-1]
         if len(rows) == 1 and last.guard == -1:
-            return self._format_value(last.value, fn, depth, last.line)
+            value = self._format_value(last.value, fn, depth, last.line)
+            return None if value is None or self._names_local(value, fn) else value
         chains = [self._list_chain(row.guard, fn) for row in rows]
         if any(kind not in _BRANCHES for chain in chains for kind, _ in chain):
             return None
@@ -274,7 +286,14 @@ class Meaning:
             text = value if text is None else choose(_join_all(asked, python), value, text, python)
             if len(text) > _LONGEST:
                 return None
-        return f"({text})" if text and text.lower() not in ("true", "false") else None
+        if not text or text.lower() in ("true", "false") or self._names_local(text, fn):
+            return None
+        return f"({text})"
+
+    def _names_local(self, text: str, fn: Fn) -> bool:
+        """Whether a text names a variable that a function alone knows."""
+        own = fn.locals.difference(one.name for one in fn.facts.parameters)
+        return bool(own) and any(match[0] == match[1] in own for match in _IDENTIFIER.finditer(text))
 
     def _put_owner_before(self, value: str, owner: str, fn: Fn) -> str:
         """An expression of a method about the object that the method is called on. owner: it, with the sign behind."""
@@ -356,6 +375,11 @@ def select_given(text: str, given: Given) -> Given:
     """Those of some parameters that a text names."""
     words = set(_WORD.findall(text)) if given else ()
     return tuple(one for one in given if one[0] in words)
+
+
+def _is_equated(text: str, start: int, end: int) -> bool:
+    """Whether a name is compared for being equal: which one it is matters then, not its number."""
+    return bool(_EQUATED_AFTER.match(text, end) or _EQUATED_BEFORE.search(text[:start]))
 
 
 def _is_fixed(member: DataMember, python: bool) -> bool:

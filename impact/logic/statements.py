@@ -46,6 +46,7 @@ class Gate(msgspec.Struct, frozen=True, array_like=True, gc=False):
     meaning: str = ""
     fixed: bool = False
     given: Given = ()
+    names: tuple[str, ...] = ()
 
 
 class StatementStart(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -59,12 +60,14 @@ class StatementStart(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class Path(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """One way to a statement; gates outermost first. Loops that last as long as the node does are not among them. root:
     the function where it begins when nothing is seen that leads to it: no caller, or nobody who makes the object.
-    functions: those that it runs through before the statement's own."""
+    functions: those that it runs through before the statement's own. times: how many ways with the same guards it
+    stands for."""
 
     start: StatementStart
     gates: tuple[Gate, ...] = ()
     root: str = ""
     functions: tuple[str, ...] = ()
+    times: int = 1
 
 
 class Outlet(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -293,12 +296,12 @@ class _Digester:
                 kind = "loop" if trigger.kind == "start" else "thread"
                 start = StatementStart(kind, self._find_rate(guard) or (start.detail if start.kind == kind else ""))
             if asked:
-                meaning = self.meaning.resolve_guard(guard) if asked == guard.text else ""
+                meaning, names = self.meaning.resolve_guard(guard) if asked == guard.text else ("", ())
                 known = select_given(meaning or asked, given.get((guard.path, guard.of), ()))
-                gates.append(Gate(guard.kind, asked, guard.of, meaning, self._is_fixed(guard), known))
+                gates.append(Gate(guard.kind, asked, guard.of, meaning, self._is_fixed(guard), known, names))
         if start.kind in ("start", "unknown"):
             start = StatementStart(start.kind)
-        return Path(start, tuple(gates), self._find_root(trigger) if unled else "", way.functions)
+        return Path(start, tuple(gates), self._find_root(trigger) if unled else "", way.functions, way.times)
 
     @cache_method
     def _find_period(self, trigger: Trigger) -> str:

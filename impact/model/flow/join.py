@@ -65,9 +65,10 @@ _TRIGGERS = {
 class CallWay(Way, frozen=True):
     """A way to a function. steps: the functions that it runs through before it, outermost first, each with the call that
     leads on (None for what only stands in the function); of several ways with the same guards that give the same for
-    what guards ask of parameters, those of one."""
+    what guards ask of parameters, those of one. times: how many ways these are."""
 
     steps: tuple[tuple[Fn, FlowCall | None], ...] = ()
+    times: int = 1
 
     @property
     def functions(self) -> tuple[str, ...]:
@@ -489,7 +490,7 @@ class Join:
             led = self._walk_callers(caller, functions, depth + 1, here)
             goes_round = goes_round or not led
             for way in led:
-                found.append(CallWay(way.trigger, (*way.guards, *own), (*way.steps, (caller, call))))
+                found.append(CallWay(way.trigger, (*way.guards, *own), (*way.steps, (caller, call)), way.times))
                 if len(found) >= _MOST_WAYS:
                     return found
         if not found and goes_round and seen:
@@ -498,12 +499,13 @@ class Join:
             around = self.code.find_enclosing(fn)
             if around is not None:
                 ways = self._walk_callers(around, functions, depth + 1, here)
-                return [CallWay(way.trigger, way.guards, (*way.steps, (around, None))) for way in ways]
+                return [CallWay(way.trigger, way.guards, (*way.steps, (around, None)), way.times) for way in ways]
             owner = get_tail(fn.facts.owner)
             starts = fn.name in ("main", "") or (owner and get_tail(fn.name) in (owner, "__init__"))
             kind = "start" if starts else "unknown"
             found.append(CallWay(Trigger(kind, get_tail(fn.name), fn.source.path, fn.facts.line)))
-        return list({(way.trigger, way.guards, self._list_given(way, fn)): way for way in reversed(found)}.values())[::-1]
+        same = group_pairs(((way.trigger, way.guards, self._list_given(way, fn)), way) for way in found)
+        return [structs.replace(ways[0], times=sum(way.times for way in ways)) for ways in same.values()]
 
     def _list_given(self, way: CallWay, fn: Fn) -> tuple[FlowExpr | None, ...]:
         """What the calls of a way give for parameters that guards ask for."""
