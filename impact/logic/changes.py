@@ -110,7 +110,10 @@ def _list_stamps(side: Side) -> tuple[list[str], list[str]]:
     statements, outlets = [], []
     for at in side.list_statements():
         statement = at.statement
-        ways = sorted(repr((way.start, [(g.kind, g.text, g.meaning, g.given) for g in way.gates])) for way in statement.ways)
+        ways = sorted(
+            repr((way.start, way.times, [(g.kind, g.text, g.meaning, g.given) for g in way.gates]))
+            for way in statement.ways
+        )
         topics, kinds = sorted(at.topics), statement.type
         statements.append(
             repr((at.path, statement.function, statement.variable, topics, statement.expression, kinds, ways))
@@ -193,7 +196,8 @@ def _drop_repeated(
     for pair in pairs:
         ours, theirs = pair[side].statement, pair[1 - side].statement
         more = sum(way.times for way in theirs.ways) - sum(way.times for way in ours.ways)
-        alike = [at for at in kept if _share_publisher(at, pair[side]) and _list_gates(at.statement) == _list_gates(ours)]
+        gates = _list_gates(ours)
+        alike = [at for at in kept if _share_publisher(at, pair[side]) and _list_gates(at.statement) == gates]
         if len(theirs.ways) == len(ours.ways) and 0 < len(alike) * len(ours.ways) <= more:
             kept = [at for at in kept if at not in alike]
     return kept
@@ -317,7 +321,8 @@ def _add_publisher(first: PublishStatement, second: PublishStatement, names: Ren
 
 
 def _drop_impossible(statement: PublishStatement) -> PublishStatement:
-    """A statement without ways on which a parameter is given what its guard does not let through, if others are left."""
+    """A statement without ways on which a parameter is given what its guard does not let through, if others are left.
+    """
     speech: guards.Language = "python" if statement.language == "python" else "cpp"
     left = tuple(way for way in statement.ways if not any(_is_shut(gate, speech) for gate in way.gates))
     return msgspec.structs.replace(statement, ways=left) if left and left != statement.ways else statement
@@ -430,7 +435,7 @@ def _compare_guards(old: Sequence[Path], new: Sequence[Path], names: Renames, la
     kind = guards.compare_ways(*known, reading)
     if kind == "equivalent":
         return kind, ""
-    kinds = {pair: guards.compare_ways(*pair, reading) for pair in (written, meant, known)}
+    kinds: dict[tuple[Ways, Ways], guards.Kind] = {pair: guards.compare_ways(*pair, reading) for pair in (written, meant, known)}
     if kinds[written] == "equivalent":
         same = _collect_condition_names(known[0], names) == _collect_condition_names(known[1], SAME)
         if (kind == "changed" and same) or _resolves_more(old, new) or _resolves_more(new, old):
@@ -444,7 +449,8 @@ def _compare_guards(old: Sequence[Path], new: Sequence[Path], names: Renames, la
 
 
 def _resolves_more(ways: Sequence[Path], others: Sequence[Path]) -> bool:
-    """Whether a name that is put back on some ways stands there as it is on others, in guards that are written alike."""
+    """Whether a name that is put back on some ways stands there as it is on others, in guards that are written alike.
+    """
     meant = {gate.text: gate for way in ways for gate in way.gates}
     return any(
         not {*meant[gate.text].names}.difference(gate.names).isdisjoint(_WORDS.findall(gate.meaning or gate.text))

@@ -31,8 +31,10 @@ _INTEGERS = frozenset(("int", "long", "short", "unsigned", "signed", "char", "si
 _WHOLE_TYPE = re.compile(r"(?:std::)?u?int(?:_fast|_least)?\d*_t|(?:std::)?s?size_t")
 _PASSED_ON = frozenset(("std::move", "std::as_const", "std::forward", "std::ref", "std::cref"))
 _ABSOLUTE = frozenset(("abs", "std::abs", "fabs", "std::fabs", "fabsf"))
-_MATH = frozenset(f"std::{name}" for name in ("isnan", "isinf", "isfinite", "min", "max", "sqrt", "pow", "hypot", "round",
-                                              "floor", "ceil", "fmod", "atan2", "signbit"))  # fmt: skip
+_MATH = frozenset((
+    "std::isnan", "std::isinf", "std::isfinite", "std::min", "std::max", "std::sqrt", "std::pow", "std::hypot",
+    "std::round", "std::floor", "std::ceil", "std::fmod", "std::atan2", "std::signbit",
+))  # fmt: skip
 _SUFFIX = re.compile(r"(?<=[\d.])[uUlLfFzZ]+$")
 _DURATION = re.compile(r"([\d.']+)(h|min|s|ms|us|ns)$")
 _SECONDS = {"h": "3600", "min": "60", "s": "1", "ms": "1e-3", "us": "1e-6", "ns": "1e-9"}

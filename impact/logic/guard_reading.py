@@ -7,7 +7,6 @@ from typing import Literal
 
 from ..model.flow.graph import GuardAt
 from . import guard_cpp, guard_python
-from .meaning import PARAMETER
 from .guard_terms import (
     FALSE,
     Conjunct,
@@ -26,6 +25,7 @@ from .guard_terms import (
     split_owner,
     substitute_names,
 )
+from .meaning import PARAMETER
 
 Language = Literal["cpp", "python"]
 _PARAMETER = re.compile(rf"(\w+?){PARAMETER}(\d+)")

@@ -147,7 +147,7 @@ def _follow_getters(before: _Side, after: _Side) -> _Side:
 def _select_turned(
     old: Mapping[str, str], old_others: Mapping[str, str], new: Mapping[str, str], new_others: Mapping[str, str]
 ) -> dict[str, str]:
-    """Paths of one kind that are of the other kind now, by what they are without underscores, as they are written now.
+    """Paths of one kind that are of the other kind now, as they are written now; by what they are without underscores.
     """
     turned = (old.keys() - old_others.keys()) & (new.keys() - new_others.keys())
     return {path: new[path] for path in turned}
@@ -192,9 +192,7 @@ def _collect_paths(side: _Side, other: _Side) -> frozenset[str]:
     """The paths of a side, and names that have the words of a path of the other side."""
     sides = [{name for way in one for piece in way for name in list_names(piece.term)} for one in (side, other)]
     joined = {_WORDS_JOINED.sub("", name) for name in sides[1] if "." in name}
-    return frozenset(
-        name for name in sides[0] if "." in name or "::" in name or _WORDS_JOINED.sub("", name) in joined
-    )
+    return frozenset(name for name in sides[0] if "." in name or "::" in name or _WORDS_JOINED.sub("", name) in joined)
 
 
 def _is_moved(one: str, other: str) -> bool:

@@ -145,9 +145,11 @@ def collect_conditions(statement: PublishStatement, names: Renames = SAME) -> fr
 
 def _make_place_key(at: StatementPlace, names: Renames) -> tuple:
     statement = at.statement
-    return names.map_path(at.path), names.map_text(
-        normalize(statement.function)
-    ), names.map_text(get_tail(statement.variable))
+    return (
+        names.map_path(at.path),
+        names.map_text(normalize(statement.function)),
+        names.map_text(get_tail(statement.variable)),
+    )
 
 
 def _make_exact_key(at: StatementPlace, names: Renames) -> tuple:
@@ -189,7 +191,12 @@ def _score(one: StatementPlace, other: StatementPlace, names: Renames) -> int:
 def _rate_likeness(one: StatementPlace, other: StatementPlace, names: Renames) -> int:
     """How alike the conditions of two statements are, in tenths, whatever starts them."""
     sides = [
-        [word for way in at.statement.ways[:1] for gate in way.gates for word in _PIECE.findall(here.map_text(gate.text))]
+        [
+            word
+            for way in at.statement.ways[:1]
+            for gate in way.gates
+            for word in _PIECE.findall(here.map_text(gate.text))
+        ]
         for at, here in ((one, names), (other, SAME))
     ]
     if max(map(len, sides)) > _LONGEST:
@@ -221,4 +228,6 @@ def _score_outlets(one: OutletAt, other: OutletAt, names: Renames) -> int:
     score = 6 * (first.topic == second.topic and bool(first.topic))
     score += 5 * (variable == get_tail(second.variable) and bool(variable))
     score += 3 * (names.map_path(one.path) == other.path) + 2 * (first.type == second.type and bool(first.type))
-    return score
+    # A variable of its name in another class is another one, unless it has the same topic.
+    moved = get_outer(names.map_text(first.function)) != get_outer(second.function)
+    return score - 3 * (moved and first.topic != second.topic)

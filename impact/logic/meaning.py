@@ -93,7 +93,9 @@ class Meaning:
         python = caller.source.facts.language == "python"
         found: list[tuple[str, str]] = []
         for place, name in asked:
-            if name in callee.assigned or any(one.path == name and one.kind == "write" for one in callee.facts.accesses):
+            if name in callee.assigned or any(
+                one.path == name and one.kind == "write" for one in callee.facts.accesses
+            ):
                 continue
             value, fn = find_argument(call.arguments, place, name), caller
             if value is None:
@@ -127,7 +129,9 @@ class Meaning:
                 value = self._expand_predicate(callee, text[end + 1 : close], fn, depth) if close else None
                 end = close + 1
             elif match[0] != match[1]:
-                value = self._expand_predicate(match[0], "", fn, depth) if python and match[1] in self._getters else None
+                value = (
+                    self._expand_predicate(match[0], "", fn, depth) if python and match[1] in self._getters else None
+                )
             else:
                 value = self._find_local_value(match[1], fn, depth, line)
                 follows = _FOLLOWS.match(text, end)
@@ -156,6 +160,8 @@ class Meaning:
         made = fn.assigned.get(name, [])
         if not made or name not in fn.locals or any(p.name == name for p in fn.facts.parameters):
             return None
+        if any("static" in row.type.split() for row in made):
+            return None  # it keeps what the last call left
         python = fn.source.facts.language == "python"
         changed = {access.kind for access in fn.facts.accesses if access.path == name}
         if len(made) == 1:
@@ -164,10 +170,10 @@ class Meaning:
             return self._format_value(made[0].value, fn, depth, made[0].line)
         if changed - {"write"} - ({"pass"} if python else set()) or depth + 1 >= _DEEPEST:
             return None
-        return self._merge_values(name, [row for row in made if row.line <= line], fn, depth)
+        return self._merge_values(name, made, fn, depth, line)
 
-    def _merge_values(self, name: str, rows: Sequence[Assignment], fn: Fn, depth: int) -> str | None:
-        """What a variable is after some assignments, of which each may be under conditions."""
+    def _merge_values(self, name: str, rows: Sequence[Assignment], fn: Fn, depth: int, line: int) -> str | None:
+        """What a variable is at a line after its assignments, of which each may be under conditions."""
         python = fn.source.facts.language == "python"
         chains = [self._list_chain(row.guard, fn) for row in rows]
         if not rows:
@@ -179,6 +185,8 @@ class Meaning:
             own = chain[len(around) :]
             if chain[: len(around)] != around or any(kind not in _BRANCHES for kind, _ in own):
                 return None
+            if row.line > line:
+                continue
             value = row.value
             if value.kind == "make" and not value.parts and value.text in _PRIMITIVE and row is rows[0]:
                 continue  # declared, and nothing yet

@@ -418,7 +418,7 @@ def _resolve_local_topic(site: Site, value: FlowValue) -> str:
     text, prefix = value.text, site.prefix
     if not prefix or text[:1] in ("/", "~"):
         return text
-    return f"~{text}" if prefix == "~" else f"{prefix}/{text}"
+    return f"~{text}" if prefix == "~" else f"{prefix.rstrip('/')}/{text}"
 
 
 def _strip_liveness(text: str) -> tuple[str, bool]:

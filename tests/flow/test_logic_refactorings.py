@@ -378,7 +378,7 @@ CPP_CASES = [
     ("a constant of another class", say("if (level_ == Old::BUSY) pub_.publish(msg);"),
      say("if (level_ == New::BUSY) pub_.publish(msg);"), []),
     ("another constant of it", say("if (level_ == Old::BUSY) pub_.publish(msg);"),
-     say("if (level_ == Old::IDLE) pub_.publish(msg);"), [("changed", "`level_ == Old::IDLE` was `level_ == Old::BUSY`")]),
+     say("if (level_ == Old::IDLE) pub_.publish(msg);"), [("changed", "`level_ == Old::IDLE` was `level_ == Old")]),
     ("what one method says with other words", say('if (get("a").ok()) pub_.publish(msg);'),
      say('bool fine = get("b").ok(); if (fine) pub_.publish(msg);'), [("changed", "")]),
     (

@@ -63,9 +63,9 @@ _TRIGGERS = {
 
 
 class CallWay(Way, frozen=True):
-    """A way to a function. steps: the functions that it runs through before it, outermost first, each with the call that
-    leads on (None for what only stands in the function); of several ways with the same guards that give the same for
-    what guards ask of parameters, those of one. times: how many ways these are."""
+    """A way to a function. steps: the functions that it runs through before it, outermost first, each with the call
+    that leads on (None for what only stands in the function); of several ways with the same guards that give the same
+    for what guards ask of parameters, those of one. times: how many ways these are."""
 
     steps: tuple[tuple[Fn, FlowCall | None], ...] = ()
     times: int = 1
