@@ -835,7 +835,7 @@ class FlowCode:
         known = fn.targets.get(callee)
         if known is None:
             last = get_tail(callee)
-            if last not in self.by_tail and last not in self.classes:
+            if last not in self.by_tail and last not in self.classes and last not in self._lambda_names:
                 return []
             known = self._find_targets(callee, fn, depth)
             if depth == 0:
@@ -862,6 +862,9 @@ class FlowCode:
             )
             if local is not None:
                 return [local]
+            kept = self._list_kept_lambdas(last, one)
+            if kept:
+                return kept
         if fn.source.facts.language == "cpp":
             owner = self.find_owner(fn)
             if owner is not None:
@@ -871,6 +874,20 @@ class FlowCode:
         else:
             return self.list_defined(last, fn.source, fn.scope)
         return self._select_nearest([f for f in candidates or () if not f.facts.owner and f.name], fn)
+
+    @cached_property
+    def _lambda_names(self) -> frozenset[str]:
+        """The names of variables that lambdas are kept in."""
+        rows = (each for fn in self.functions for each in fn.facts.assignments)
+        return frozenset(each.target for each in rows if each.value.kind == "lambda" and each.target.isidentifier())
+
+    def _list_kept_lambdas(self, name: str, fn: Fn) -> list[Fn]:
+        """The lambdas that a local variable of a function is, when it is nothing else."""
+        rows = fn.assigned.get(name, ()) if name in self._lambda_names and name in fn.locals else ()
+        if any(each.value.kind != "lambda" for each in rows):
+            return []
+        found = (self.by_name.get((fn.source.path, each.value.text)) for each in rows)
+        return [one for one in found if one is not None]
 
     def _list_called_methods(self, receiver: str, name: str, fn: Fn, depth: int) -> list[Fn]:
         if receiver in ("this", "super()", "super"):
@@ -923,7 +940,7 @@ class FlowCode:
     @cached_property
     def callers(self) -> dict[Fn, list[tuple[Fn, FlowCall]]]:
         """Calls that reach a function of the code, by the function."""
-        calls = self.list_calls_named(self.by_tail.keys() | self.classes.keys())
+        calls = self.list_calls_named(self.by_tail.keys() | self.classes.keys() | self._lambda_names)
         reached = (
             (target, (fn, call))
             for fn, call in calls

@@ -13,12 +13,12 @@ from msgspec import structs
 from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ....edges.reach import walk
-from ...facts.flow import FlowExpr, FlowFile, Guard
+from ...facts.flow import FlowCall, FlowExpr, FlowFile, Guard
 from ..launch.result import EMPTY, Launched, ShareLine, Started
 from ..launch.text import LaunchText
 from . import nodes as programs_of
 from .calls import FOREIGN, Calls, FrameworkCall
-from .code import CodeFile, FlowCode, Fn, get_tail, list_made
+from .code import CodeFile, FlowCode, Fn, find_argument, get_tail, list_made
 from .defined import DefinedInterfaces
 from .endpoints import Site, Sites, Statement, unparse
 from .frameworks import Frameworks, load_frameworks
@@ -55,6 +55,7 @@ _OVERRIDES = re.compile(r"qos_overrides\.").match
 _PASSED = "something that runs passes the name"
 _MOST_WAYS = 16
 _DEEPEST = 10
+_DEEPEST_GIVEN = 3
 _TRIGGERS = {
     "subscriber": "subscriber", "server": "service", "action server": "action", "client": "service",
     "action client": "action", "publisher": "unknown",
@@ -62,10 +63,17 @@ _TRIGGERS = {
 
 
 class CallWay(Way, frozen=True):
-    """A way to a function. functions: those that it runs through before it, outermost first; of several ways with the
-    same guards, those of one."""
+    """A way to a function. steps: the functions that it runs through before it, outermost first, each with the call
+    that leads on (None for what only stands in the function); of several ways with the same guards that give the same
+    for what guards ask of parameters, those of one. times: how many ways these are."""
 
-    functions: tuple[str, ...] = ()
+    steps: tuple[tuple[Fn, FlowCall | None], ...] = ()
+    times: int = 1
+
+    @property
+    def functions(self) -> tuple[str, ...]:
+        """The names of the functions."""
+        return tuple(fn.name for fn, _ in self.steps)
 
 
 class Running(NamedTuple):
@@ -482,7 +490,7 @@ class Join:
             led = self._walk_callers(caller, functions, depth + 1, here)
             goes_round = goes_round or not led
             for way in led:
-                found.append(CallWay(way.trigger, (*way.guards, *own), (*way.functions, caller.name)))
+                found.append(CallWay(way.trigger, (*way.guards, *own), (*way.steps, (caller, call)), way.times))
                 if len(found) >= _MOST_WAYS:
                     return found
         if not found and goes_round and seen:
@@ -491,12 +499,41 @@ class Join:
             around = self.code.find_enclosing(fn)
             if around is not None:
                 ways = self._walk_callers(around, functions, depth + 1, here)
-                return [CallWay(way.trigger, way.guards, (*way.functions, around.name)) for way in ways]
+                return [CallWay(way.trigger, way.guards, (*way.steps, (around, None)), way.times) for way in ways]
             owner = get_tail(fn.facts.owner)
             starts = fn.name in ("main", "") or (owner and get_tail(fn.name) in (owner, "__init__"))
             kind = "start" if starts else "unknown"
             found.append(CallWay(Trigger(kind, get_tail(fn.name), fn.source.path, fn.facts.line)))
-        return list({(way.trigger, way.guards): way for way in reversed(found)}.values())[::-1]
+        same = group_pairs(((way.trigger, way.guards, self._list_given(way, fn)), way) for way in found)
+        return [structs.replace(ways[0], times=sum(way.times for way in ways)) for ways in same.values()]
+
+    def _list_given(self, way: CallWay, fn: Fn) -> tuple[FlowExpr | None, ...]:
+        """What the calls of a way give for parameters that guards ask for."""
+        called = [*(one for one, _ in way.steps[1:]), fn]
+        return tuple(
+            find_argument(call.arguments, place, name)
+            for (_, call), callee in zip(way.steps, called, strict=False)
+            if call is not None
+            for place, name in self.list_asked_parameters(callee)
+        )
+
+    @cache_method
+    def list_asked_parameters(self, fn: Fn, depth: int = 0) -> tuple[tuple[int, str], ...]:
+        """The parameters, with their places, that may be asked for in the guards of a function, or of one that it hands
+        them to."""
+        rows = fn.facts.guards
+        words = {word for row in rows for word in _WORD.findall(row.text)}
+        if rows:
+            words.update(word for row in fn.facts.assignments for word in _WORD.findall(row.value.text))
+        named = [(place, one.name) for place, one in enumerate(fn.facts.parameters)]
+        handed = {one.text for call in fn.facts.calls for one in call.arguments if one.kind == "name"}
+        if depth < _DEEPEST_GIVEN and any(name in handed and name not in words for _, name in named):
+            for call in fn.facts.calls:
+                for target in self.code.list_targets(call.callee, fn):
+                    asked = self.list_asked_parameters(target, depth + 1) if target is not fn else ()
+                    given = (find_argument(call.arguments, place, name) for place, name in asked)
+                    words.update(one.text for one in given if one is not None and one.kind == "name")
+        return tuple((place, name) for place, name in named if name in words)
 
     def build(self, root: str = "", rev: str = "", unread: Iterable[str] = (), launch: Launched | None = None) -> Graph:
         """The graph of all programs, or of what a launch starts. Without one, code that no program runs belongs to
@@ -728,7 +765,8 @@ class Join:
         node = _get_node(owner)
         functions = owner.functions if isinstance(owner, Running) else None
         own = self.list_guards(use.fn, use.call.guard)
-        ways = [Way(way.trigger, (*way.guards, *own)) for way in self.list_ways(use.fn, functions)]
+        led = (Way(way.trigger, (*way.guards, *own)) for way in self.list_ways(use.fn, functions))
+        ways = list(dict.fromkeys(led))
         guards = ways[0].guards if len(ways) == 1 else own
         triggers = tuple(dict.fromkeys(way.trigger for way in ways))
         common = {
