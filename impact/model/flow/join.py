@@ -44,7 +44,6 @@ from .names import NameRefused, is_open, make_open_part, normalise, resolve_ros1
 from .nodes import BuiltPackage, CodeReach, StartableProgram
 from .objects import NodeObjects, make_key
 from .qos import apply_overrides, find_qos, list_overridable
-from .reaching import list_guards_around
 from .started import Instance, make_instance
 from .types import FlowType, parse_flow_type
 from .values import ASKING, FlowValue, FlowValues, spell_condition
@@ -187,7 +186,7 @@ class Join:
             }
             if closed:
                 facts = fn.facts
-                shut = {row for row in range(len(facts.guards)) if not closed.isdisjoint(list_guards_around(fn, row))}
+                shut = {row for row in range(len(facts.guards)) if not closed.isdisjoint(fn.list_guards_around(row))}
                 calls = tuple(call for call in facts.calls if call.guard not in shut)
                 assignments = tuple(each for each in facts.assignments if each.guard not in shut)
                 cut[fn] = Fn(fn.source, structs.replace(facts, calls=calls, assignments=assignments))
@@ -232,7 +231,7 @@ class Join:
             rows = (*fn.facts.calls, *fn.facts.assignments) if asking else ()
             leading |= {row.guard for row in rows if row.guard >= 0 and row.line in lines}
             leading.update(nodes.get(fn, ()))
-            around = {place for guard in leading for place in list_guards_around(fn, guard)}
+            around = {place for guard in leading for place in fn.list_guards_around(guard)}
             if not asking.isdisjoint(around):
                 found[fn] = sorted(asking & around)
         return found
