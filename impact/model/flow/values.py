@@ -121,6 +121,8 @@ class FlowValues:
         self.asked: dict[str, FlowValue | None] = {}
         # Decided guards, each with the settings that it rests on and what keeps the ids in its key from being reused.
         self._decided: dict[tuple, list[tuple[dict[str, FlowValue | None], DecidedCondition, tuple]]] = {}
+        # The same where only some functions run, by their id().
+        self._copies: dict[int, FlowValues] = {}
         # Values of variables, by all that does not show in what they rest on; and what is being worked out.
         self._known: dict[tuple, list[_Known]] = {}
         self._works: list[_Work] = []
@@ -137,7 +139,11 @@ class FlowValues:
 
     def run(self, functions: Collection[Fn]) -> FlowValues:
         """The same code where only some functions run: what others pass to them does not count."""
-        return self._make_copy(self.settings, self.arguments, self.way, functions, self.node, self.made)
+        known = self._copies.get(id(functions))
+        if known is None:
+            known = self._make_copy(self.settings, self.arguments, self.way, functions, self.node, self.made)
+            self._copies[id(functions)] = known  # which keeps the functions, so that nothing else comes by the same id
+        return known
 
     def limit_to_calls(self, way: Mapping[Fn, FlowCall]) -> FlowValues:
         """The same code as far as it is reached through some calls, by the function called."""
