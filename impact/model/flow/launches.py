@@ -295,7 +295,8 @@ class _Declared:
 
     def list_terms(self, one: Running) -> dict[str, ParameterTerms]:
         """The parameters that a program declares, as list_terms() says."""
-        key = id(one.functions), one.objects, one.others
+        parts = (None if part is None else frozenset(part) for part in (one.objects, one.others))
+        key = id(one.functions), *parts
         if key not in self._known:
             self._known[key] = one, list_terms(self._join, one, list_libraries(self._sources.workspace))
         return self._known[key][1]

@@ -11,10 +11,11 @@ from typing import NamedTuple
 
 from ....edges.groups import group_pairs
 from ...facts.flow import Assignment, FlowCall, FlowExpr, FlowParameter, Guard
+from ...facts.python.flow_expressions import LONGEST_OTHER
 from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail
-from .conditions import ConditionReader, DecidedCondition
+from .conditions import ConditionReader, DecidedCondition, is_truth
 from .graph import How
 from .names import is_open, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
@@ -213,9 +214,20 @@ class FlowValues:
             return  # made empty, and written later
         elif kind == "index" and value.parts:
             yield from self._evaluate_element(value, fn, line, seen)
+        elif kind == "other" and (decided := self._decide_truth(value, fn, line, seen)).holds is not None:
+            yield from _put_under([FlowValue(str(decided.holds))], decided, "")
         else:
             what = value.text or kind
             yield FlowValue(None, "unresolved", f"`{what[:60]}` is not followed")
+
+    def _decide_truth(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> DecidedCondition:
+        """Whether a comparison or negation whose truth is a value holds."""
+        mark = ("truth", value.text)
+        if len(value.text) >= LONGEST_OTHER or not is_truth(value.text, fn.source.facts.language == "cpp"):
+            return DecidedCondition()
+        if self._is_in(mark, seen):
+            return DecidedCondition()
+        return self._decide_guard(Guard("if", value.text, line, _find_guard_before(fn, line)), fn, (*seen, mark))
 
     def _evaluate_fallback(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         """`a or b`: b is there where a may be empty, as a default where it is not known to be."""
