@@ -12,7 +12,6 @@ from .python_moveit import make
 from .python_values import TooMuch
 from .python_walk import MOST_STEPS, HelperModule, Walker
 
-
 # What many launch files import is read once; the walks through it leave its tree as it is.
 _read = lru_cache(maxsize=64)(read)
 

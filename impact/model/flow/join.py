@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
@@ -139,6 +139,8 @@ class Join:
         found: list[Running] = []
         for program in programs_of.list_programs(self.code, self.built, self._find_kinds):
             functions, classes = self._find_reached(program)
+            if program.kind == "plugin":
+                functions, classes = self._leave_out_nodes(program, functions, classes)
             named = [use for use in self.calls.select_uses("node") if use.fn in functions]
             node, use = self._make_node(program, named, self.values.run(functions))
             one = Running(program, node, functions, classes, self.values)
@@ -158,6 +160,23 @@ class Join:
         named = self.code.classes.get(get_tail(program.plugin), ())
         cls = next((one for one in named if one.source.path == program.path), None)
         return self.reach.find_reached(program.roots, [cls] if cls is not None else [], cut=cut)
+
+    def _leave_out_nodes(
+        self, program: StartableProgram, functions: set[Fn], classes: set[str]
+    ) -> tuple[set[Fn], set[str]]:  # fmt: skip
+        """What a plugin reaches without what it asks of nodes that it is given: the program that makes them runs that.
+        classes: that it makes objects of, by key."""
+        given = {
+            fn: Fn(fn.source, structs.replace(fn.facts, calls=(), assignments=()))
+            for fn in functions
+            if (cls := self.code.find_owner(fn)) is not None
+            and cls.key not in classes
+            and "node" in self._find_kinds(cls)
+        }
+        if not given:
+            return functions, classes
+        left, classes = self._find_reached(program, given)
+        return left - given.keys(), classes
 
     def _select_open(self, parts: list[Running]) -> list[Running]:
         """Of the nodes that a program is those that it makes where the launch closes branches; the first where it makes
@@ -258,11 +277,14 @@ class Join:
             node = structs.replace(running.node, id=f"{running.node.id}{one.name}", name=one.name)
             yield running._replace(node=node, objects=one.keys - shared, values=one.values, fixed=one.fixed)
 
-    def runs(self, running: Running, keys: frozenset[str]) -> bool:
-        """Whether a node runs a use in one of its functions. keys: of the node objects that the use is made on."""
-        if running.objects is None or keys & running.objects:
+    def runs(self, running: Running, use: FrameworkCall, through: Sequence[FrameworkCall] = ()) -> bool:
+        """Whether a node runs a use in one of its functions. through: the uses that make what it is called on, where it
+        does not tell itself on which node it is made."""
+        if running.objects is None:
             return True
-        return running.others is not None and not keys & running.others
+        keys = frozenset().union(*(self.objects.find_keys(one, running.functions) for one in through))
+        keys = keys or self.objects.find_keys(use, running.functions)
+        return bool(keys & running.objects) or (running.others is not None and not keys & running.others)
 
     def find_started(self, launch: Launched) -> tuple[list[Running], list[Unresolved]]:
         """The nodes that a launch starts, under the names it gives them; and the starts that the code does not have."""
@@ -548,8 +570,7 @@ class Join:
 
     def _list_publishes(self, owners: _Owners, count: _Count) -> Iterator[Publish]:
         for statement in self.sites.statements:
-            keys = [self.objects.find_keys(site.use) for site in statement.sites]
-            those = owners.list_owners(statement.use, frozenset().union(*keys))
+            those = owners.list_owners(statement.use, [site.use for site in statement.sites])
             if not those:
                 continue
             if not statement.through:  # else counted where it sends
@@ -779,14 +800,14 @@ class _Owners:
             (number, one) for one in running for number in one.functions
         )
 
-    def list_owners(self, use: FrameworkCall, keys: frozenset[str] = frozenset()) -> list[Owner]:
+    def list_owners(self, use: FrameworkCall, through: Sequence[FrameworkCall] = ()) -> list[Owner]:
         """Who runs a use: nodes that reach it, else those that are built from its file, else its library, or none.
-        keys: of the node objects that it is made on, where it does not tell itself."""
-        keys = keys or self.join.objects.find_keys(use)
+        through: as for Join.runs()."""
         found = self._by_function.get(use.fn, [])
         if self.launched or found:
-            return [one for one in found if self.join.runs(one, keys)]
-        built = [one for one in self.running if use.fn.source.path in one.program.files and self.join.runs(one, keys)]
+            return [one for one in found if self.join.runs(one, use, through)]
+        here = (one for one in self.running if use.fn.source.path in one.program.files)
+        built = [one for one in here if self.join.runs(one, use, through)]
         if built:
             return [*built]
         node = self.join.find_library(use.fn)

@@ -404,7 +404,7 @@ def _list_names(join: Join, one: Running, instance: Instance) -> Iterator[str]:
     """The full names that a node's code uses, before remapping."""
     bare = one._replace(instance=instance._replace(remaps=()))
     for site in join.sites.endpoints:
-        if site.use.fn in one.functions and join.runs(one, join.objects.find_keys(site.use)):
+        if site.use.fn in one.functions and join.runs(one, site.use):
             values = site.names
             if not site.implied:
                 values = join.sites.list_names(site.use, site.prefix, one.values)
@@ -417,7 +417,7 @@ def _collect_parameters(join: Join, one: Running, instance: Instance) -> set[str
     tell its namespace."""
     found: set[str] = set()
     for use in join.calls.select_uses("parameter"):
-        if use.fn in one.functions and join.runs(one, join.objects.find_keys(use)):
+        if use.fn in one.functions and join.runs(one, use):
             names = {value.text for value in join.list_parameter_names(use) if value.text}
             if instance.started.generation != 1:
                 found |= names
