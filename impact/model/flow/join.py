@@ -40,7 +40,7 @@ from .graph import (
     Way,
 )
 from .loads import Loaded, list_loaded
-from .names import NameRefused, is_open, make_open_part, normalise, resolve_ros1_name, resolve_ros2_name
+from .names import NameRefused, is_open, join_name, make_open_part, normalise, resolve_ros1_name, resolve_ros2_name
 from .nodes import BuiltPackage, CodeReach, StartableProgram
 from .objects import NodeObjects, make_key
 from .qos import apply_overrides, find_qos, list_overridable
@@ -858,7 +858,9 @@ def _keep_fixed(
         start = start._replace(name=EMPTY)
     if "namespace" in fixed:
         start = start._replace(namespace=EMPTY)
-        namespace = "/<namespace>" if "below" in fixed and around.value not in (None, "", "/") else namespace
+        if "below" in fixed:
+            above = around.value if around.value is not None else make_open_part(around.shown)
+            namespace = join_name("/" + above.strip("/"), namespace.lstrip("/"))
     return start, namespace
 
 

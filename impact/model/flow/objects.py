@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any, NamedTuple, TypeVar
 
 from ....edges.groups import group_pairs
-from ...facts.flow import FlowExpr
+from ...facts.flow import FlowCall, FlowExpr
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_parameter, get_tail
 from .graph import Role
@@ -39,6 +39,20 @@ class NodeObject(NamedTuple):
     values: FlowValues
     uses: tuple[FrameworkCall, ...]
     fixed: frozenset[str] = frozenset()
+
+
+class _Given(NamedTuple):
+    """What is given to a node. fn, line: where that is written; way: the call through which that function is reached,
+    by the function."""
+
+    value: FlowExpr
+    fn: Fn
+    line: int
+    way: tuple[tuple[Fn, FlowCall], ...] = ()
+
+    def list_texts(self, values: FlowValues) -> set[str | None]:
+        """What it may be, None for what is not known."""
+        return {one.text for one in values.limit_to_calls(dict(self.way)).evaluate(self.value, self.fn, self.line)}
 
 
 class NodeObjects:
@@ -142,7 +156,7 @@ class NodeObjects:
             full, fixed = f"/<{get_tail(cls.name)}>", frozenset[str]()
             if own is not None:
                 # A derived class may hand the options to the one that names it.
-                telling = next((use for use in uses if _find_remapped(use, "__ns:=") is not None), own[0])
+                telling = next((use for use in uses if self._find_remapped(use, "__ns:=") is not None), own[0])
                 full, fixed = self.join_namespace(telling, own[1], values), self.find_fixed(telling, values)
             by_name.setdefault((full, fixed), []).extend([row] if row is not None else [])
         for (name, fixed), made in by_name.items():
@@ -184,29 +198,49 @@ class NodeObjects:
 
     def join_namespace(self, use: FrameworkCall, own: str, values: FlowValues) -> str:
         """The full name of a node by its own name and the namespace that its code gives, if any."""
-        remapped = _find_remapped(use, "__ns:=")
+        remapped = self._find_remapped(use, "__ns:=")
         if remapped is not None:
-            texts = self._list_texts(remapped, use, values)
+            texts = remapped.list_texts(values)
             spaces = {normalise("/" + (text or _OPEN).replace(NAMESPACE, "/")) for text in texts}
             return join_name(spaces.pop() if len(spaces) == 1 else _OPEN, own)
         written = self.calls.find_argument(use, use.row.namespace) if use.row.namespace else None
         if written is None:
             return join_name("/", own)
-        texts = self._list_texts(written, use, values)
+        texts = _Given(written, use.fn, use.call.line).list_texts(values)
         space = texts.pop() if len(texts) == 1 else None
         return join_name(_OPEN if space is None else "/" + space.lstrip("/"), own)
 
     def find_fixed(self, use: FrameworkCall, values: FlowValues) -> frozenset[str]:
         """What the options of a node say of it, whatever a launch says, as NodeObject.fixed has it."""
-        remapped = _find_remapped(use, "__ns:=")
-        found = {"name"} if _find_remapped(use, "__node:=") is not None else set()
+        remapped = self._find_remapped(use, "__ns:=")
+        found = {"name"} if self._find_remapped(use, "__node:=") is not None else set()
         if remapped is not None:
-            below = any(NAMESPACE in (one or "") for one in self._list_texts(remapped, use, values))
+            below = any(NAMESPACE in (one or "") for one in remapped.list_texts(values))
             found |= {"namespace", "below"} if below else {"namespace"}
         return frozenset(found)
 
-    def _list_texts(self, value: FlowExpr, use: FrameworkCall, values: FlowValues) -> set[str | None]:
-        return {one.text for one in values.evaluate(value, use.fn, use.call.line)}
+    def _find_remapped(self, use: FrameworkCall, rule: str) -> _Given | None:
+        """What the arguments among the options of a node remap to by a rule, also where a function of the code makes
+        these options; None where they have none such."""
+        for argument in use.call.arguments:
+            found = _find_rule(argument, rule)
+            if found is not None:
+                return _Given(found, use.fn, use.call.line)
+        for argument in use.call.arguments:
+            targets = self.code.list_targets(argument.text, use.fn) if argument.kind == "call" else []
+            calls = [call for call in use.fn.list_calls(argument.text) if call.arguments == argument.parts]
+            if len(targets) != 1 or not calls:
+                continue
+            target = targets[0]
+            written = [(row.guard, row.line, one) for row in target.facts.calls for one in row.arguments]
+            written += [(each.guard, each.line, each.value) for each in target.facts.assignments]
+            for guard, line, value in written:
+                found = _find_rule(value, rule)
+                if found is not None:
+                    # Whether it is given hangs on a condition.
+                    sure = found if guard < 0 else FlowExpr("other")
+                    return _Given(sure, target, line, ((target, calls[0]),))
+        return None
 
     def find_keys(self, use: FrameworkCall, functions: Set[Fn]) -> frozenset[str]:
         """What tells on which node objects a use is made where some functions run, as NodeObject.keys has it; empty
@@ -306,11 +340,6 @@ class _Trace:
 def make_key(fn: Fn, line: int) -> str:
     """The key of what is made on a line of a function."""
     return f"{fn.source.path}:{line}"
-
-
-def _find_remapped(use: FrameworkCall, rule: str) -> FlowExpr | None:
-    """What the arguments among the options of a node remap to by a rule; None where they have none such."""
-    return next(filter(None, (_find_rule(one, rule) for one in use.call.arguments)), None)
 
 
 def _find_rule(value: FlowExpr, rule: str) -> FlowExpr | None:
