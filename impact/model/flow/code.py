@@ -884,7 +884,7 @@ class FlowCode:
                 return self.find_method(cls, last)
             wanted = split_name(meant)
             found = [f for f in candidates or () if not f.facts.owner and split_name(f.name)[-len(wanted) :] == wanted]
-            return self._select_nearest(found, fn)
+            return self._select_nearest(found, fn) or self._select_only(found, wanted)
         for one in self.list_enclosing_chain(fn):
             local = self.by_name.get(
                 (fn.source.path, f"{one.name}{'::' if fn.source.facts.language == 'cpp' else '.'}{last}")
@@ -948,6 +948,11 @@ class FlowCode:
             if near:
                 return near
         return []
+
+    def _select_only(self, found: list[Fn], name: tuple[str, ...]) -> list[Fn]:
+        """The functions of another package in C++ that a whole name means, where one file alone has them."""
+        same = [f for f in found if split_name(f.name) == name and f.source.facts.language == "cpp"]
+        return same if len({f.source.path for f in same}) == 1 else []
 
     @cached_property
     def callers(self) -> dict[Fn, list[tuple[Fn, FlowCall]]]:

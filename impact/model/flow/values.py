@@ -549,6 +549,8 @@ class FlowValues:
         for writer, others in group_pairs(row for row in rows if row[0] is not fn or not line).items():
             if remade and writer is not fn and self.code.is_constructor(writer):
                 continue
+            if writer in self.made and self._is_made_otherwise(writer):
+                continue
             found.add(self._evaluate_elsewhere(variable, writer, others, filled, origins, seen), stays=True)
         here = [(use, values) for use, values in filled if use.fn is fn and use.call.line < line]
         for use, values in filled:
@@ -587,6 +589,12 @@ class FlowValues:
         if found.held and not values:
             yield FlowValue(None, "given", f"`{variable.name}` has no known value that passes the conditions around")
         yield from _restore_alone(values)
+
+    def _is_made_otherwise(self, fn: Fn) -> bool:
+        """Whether the objects that it is about are made by other constructors than this one."""
+        owner = self.code.find_owner(fn)
+        others = (one for one, rows in self.made.items() if rows and self.code.find_owner(one) is owner)
+        return not self.made[fn] and any(others)
 
     def _evaluate_beginning(self, variable: Variable, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
         """What a member or a variable outside of functions is declared with."""

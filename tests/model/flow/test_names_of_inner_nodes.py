@@ -145,6 +145,26 @@ def test_a_node_that_a_plugin_is_given_is_not_run_by_the_plugin():
     assert {one.topic for one in found.endpoints if one.node in plugins and not one.implied} == {"/planned"}
 
 
+def test_of_several_constructors_the_one_that_makes_the_object_tells_its_members(tmp_path):
+    code = MAP.replace(
+        "explicit Map(const std::string & name) : Map(name, \"/\", name) {}",
+        "explicit Map(const rclcpp::NodeOptions & options) : Node(\"map\", options), name_(\"map\") {}",
+    ).replace(': Node(name, ""', ': name_(name), Node(name, ""').replace("SPACE", "space").replace(
+        "void begin() {", "std::string name_;\n      void begin() { own_ = create_publisher<Bool>(name_ + \"_own\", 1);"
+    )  # fmt: skip
+    files = {
+        "map/package.xml": manifest("map", "ament_cmake"),
+        "map/CMakeLists.txt": (
+            "cmake_minimum_required(VERSION 3.16)\nproject(map)\nfind_package(ament_cmake REQUIRED)\n"
+            "find_package(rclcpp REQUIRED)\nadd_executable(server server.cpp)\nament_package()\n"
+        ),
+        "map/server.cpp": code,
+        "map/launch/map.launch.xml": '<launch><node pkg="map" exec="server"/></launch>',
+    }
+    found = graph_on_disk(tmp_path, files, "map/launch/map.launch.xml")
+    assert {topic for _, topic, _ in ends(found, "publisher") if topic.endswith("own")} == {"/far/far_own"}
+
+
 def test_a_component_is_called_what_its_base_class_calls_it():
     files = {
         "p/CMakeLists.txt": """
