@@ -40,8 +40,8 @@ class Fn:
     objects that it makes."""
 
     __slots__ = (
-        "assigned", "facts", "heads", "identities", "is_lambda", "locals", "made", "name", "owner", "place", "scope",
-        "source", "targets",
+        "_around", "_calls", "_lines", "assigned", "facts", "heads", "identities", "is_lambda", "locals", "made",
+        "name", "owner", "place", "scope", "source", "targets",
     )  # fmt: skip
 
     def __init__(self, source: CodeFile, facts: FlowFunction):
@@ -68,6 +68,35 @@ class Fn:
         # What a module of Python assigns is everybody's in it.
         if python:
             self.locals = self.locals.difference(facts.outside) if facts.name else set()
+        self._around: dict[int, tuple[int, ...]] = {}
+        self._lines: dict[int, set[int]] | None = None
+        self._calls: dict[str, list[FlowCall]] | None = None
+
+    def list_guards_around(self, guard: int) -> tuple[int, ...]:
+        """A guard, by its place, and those around it, the nearest first."""
+        known = self._around.get(guard)
+        if known is None:
+            found: list[int] = []
+            outer = guard
+            while 0 <= outer < len(self.facts.guards) and len(found) < 64:
+                found.append(outer)
+                outer = self.facts.guards[outer].outer
+            known = self._around[guard] = tuple(found)
+        return known
+
+    def collect_guards(self, line: int) -> Collection[int]:
+        """The guards, by their places, that calls and assignments on a line are under, -1 for none."""
+        if self._lines is None:
+            self._lines = {}
+            for row in (*self.facts.calls, *self.facts.assignments):
+                self._lines.setdefault(row.line, set()).add(row.guard)
+        return self._lines.get(line, ())
+
+    def list_calls(self, callee: str) -> Sequence[FlowCall]:
+        """The calls of a callee as it is written, in order."""
+        if self._calls is None:
+            self._calls = group_pairs((call.callee, call) for call in self.facts.calls)
+        return self._calls.get(callee, ())
 
     def forget(self) -> None:
         """Drops what rests on the bodies of other functions."""
@@ -855,7 +884,7 @@ class FlowCode:
                 return self.find_method(cls, last)
             wanted = split_name(meant)
             found = [f for f in candidates or () if not f.facts.owner and split_name(f.name)[-len(wanted) :] == wanted]
-            return self._select_nearest(found, fn)
+            return self._select_nearest(found, fn) or self._select_only(found, wanted)
         for one in self.list_enclosing_chain(fn):
             local = self.by_name.get(
                 (fn.source.path, f"{one.name}{'::' if fn.source.facts.language == 'cpp' else '.'}{last}")
@@ -936,6 +965,11 @@ class FlowCode:
             if near:
                 return near
         return []
+
+    def _select_only(self, found: list[Fn], name: tuple[str, ...]) -> list[Fn]:
+        """The functions of another package in C++ that a whole name means, where one file alone has them."""
+        same = [f for f in found if split_name(f.name) == name and f.source.facts.language == "cpp"]
+        return same if len({f.source.path for f in same}) == 1 else []
 
     @cached_property
     def callers(self) -> dict[Fn, list[tuple[Fn, FlowCall]]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
@@ -40,11 +40,10 @@ from .graph import (
     Way,
 )
 from .loads import Loaded, list_loaded
-from .names import NameRefused, is_open, make_open_part, normalise, resolve_ros1_name, resolve_ros2_name
+from .names import NameRefused, is_open, join_name, make_open_part, normalise, resolve_ros1_name, resolve_ros2_name
 from .nodes import BuiltPackage, CodeReach, StartableProgram
 from .objects import NodeObjects, make_key
 from .qos import apply_overrides, find_qos, list_overridable
-from .reaching import list_guards_around
 from .started import Instance, make_instance
 from .types import FlowType, parse_flow_type
 from .values import ASKING, FlowValue, FlowValues, spell_condition
@@ -148,6 +147,8 @@ class Join:
         found: list[Running] = []
         for program in programs_of.list_programs(self.code, self.built, self._find_kinds):
             functions, classes = self._find_reached(program)
+            if program.kind == "plugin":
+                functions, classes = self._leave_out_nodes(program, functions, classes)
             named = [use for use in self.calls.select_uses("node") if use.fn in functions]
             node, use = self._make_node(program, named, self.values.run(functions))
             one = Running(program, node, functions, classes, self.values)
@@ -167,6 +168,23 @@ class Join:
         named = self.code.classes.get(get_tail(program.plugin), ())
         cls = next((one for one in named if one.source.path == program.path), None)
         return self.reach.find_reached(program.roots, [cls] if cls is not None else [], cut=cut)
+
+    def _leave_out_nodes(
+        self, program: StartableProgram, functions: set[Fn], classes: set[str]
+    ) -> tuple[set[Fn], set[str]]:  # fmt: skip
+        """What a plugin reaches without what it asks of nodes that it is given: the program that makes them runs that.
+        classes: that it makes objects of, by key."""
+        given = {
+            fn: Fn(fn.source, structs.replace(fn.facts, calls=(), assignments=()))
+            for fn in functions
+            if (cls := self.code.find_owner(fn)) is not None
+            and cls.key not in classes
+            and "node" in self._find_kinds(cls)
+        }
+        if not given:
+            return functions, classes
+        left, classes = self._find_reached(program, given)
+        return left - given.keys(), classes
 
     def _select_open(self, parts: list[Running]) -> list[Running]:
         """Of the nodes that a program is those that it makes where the launch closes branches; the first where it makes
@@ -195,7 +213,7 @@ class Join:
             }
             if closed:
                 facts = fn.facts
-                shut = {row for row in range(len(facts.guards)) if not closed.isdisjoint(list_guards_around(fn, row))}
+                shut = {row for row in range(len(facts.guards)) if not closed.isdisjoint(fn.list_guards_around(row))}
                 calls = tuple(call for call in facts.calls if call.guard not in shut)
                 assignments = tuple(each for each in facts.assignments if each.guard not in shut)
                 cut[fn] = Fn(fn.source, structs.replace(facts, calls=calls, assignments=assignments))
@@ -240,7 +258,7 @@ class Join:
             rows = (*fn.facts.calls, *fn.facts.assignments) if asking else ()
             leading |= {row.guard for row in rows if row.guard >= 0 and row.line in lines}
             leading.update(nodes.get(fn, ()))
-            around = {place for guard in leading for place in list_guards_around(fn, guard)}
+            around = {place for guard in leading for place in fn.list_guards_around(guard)}
             if not asking.isdisjoint(around):
                 found[fn] = sorted(asking & around)
         return found
@@ -267,11 +285,14 @@ class Join:
             node = structs.replace(running.node, id=f"{running.node.id}{one.name}", name=one.name)
             yield running._replace(node=node, objects=one.keys - shared, values=one.values, fixed=one.fixed)
 
-    def runs(self, running: Running, keys: frozenset[str]) -> bool:
-        """Whether a node runs a use in one of its functions. keys: of the node objects that the use is made on."""
-        if running.objects is None or keys & running.objects:
+    def runs(self, running: Running, use: FrameworkCall, through: Sequence[FrameworkCall] = ()) -> bool:
+        """Whether a node runs a use in one of its functions. through: the uses that make what it is called on, where it
+        does not tell itself on which node it is made."""
+        if running.objects is None:
             return True
-        return running.others is not None and not keys & running.others
+        keys = frozenset().union(*(self.objects.find_keys(one, running.functions) for one in through))
+        keys = keys or self.objects.find_keys(use, running.functions)
+        return bool(keys & running.objects) or (running.others is not None and not keys & running.others)
 
     def find_started(self, launch: Launched) -> tuple[list[Running], list[Unresolved]]:
         """The nodes that a launch starts, under the names it gives them; and the starts that the code does not have."""
@@ -586,8 +607,7 @@ class Join:
 
     def _list_publishes(self, owners: _Owners, count: _Count) -> Iterator[Publish]:
         for statement in self.sites.statements:
-            keys = [self.objects.find_keys(site.use) for site in statement.sites]
-            those = owners.list_owners(statement.use, frozenset().union(*keys))
+            those = owners.list_owners(statement.use, [site.use for site in statement.sites])
             if not those:
                 continue
             if not statement.through:  # else counted where it sends
@@ -818,14 +838,14 @@ class _Owners:
             (number, one) for one in running for number in one.functions
         )
 
-    def list_owners(self, use: FrameworkCall, keys: frozenset[str] = frozenset()) -> list[Owner]:
+    def list_owners(self, use: FrameworkCall, through: Sequence[FrameworkCall] = ()) -> list[Owner]:
         """Who runs a use: nodes that reach it, else those that are built from its file, else its library, or none.
-        keys: of the node objects that it is made on, where it does not tell itself."""
-        keys = keys or self.join.objects.find_keys(use)
+        through: as for Join.runs()."""
         found = self._by_function.get(use.fn, [])
         if self.launched or found:
-            return [one for one in found if self.join.runs(one, keys)]
-        built = [one for one in self.running if use.fn.source.path in one.program.files and self.join.runs(one, keys)]
+            return [one for one in found if self.join.runs(one, use, through)]
+        here = (one for one in self.running if use.fn.source.path in one.program.files)
+        built = [one for one in here if self.join.runs(one, use, through)]
         if built:
             return [*built]
         node = self.join.find_library(use.fn)
@@ -876,7 +896,9 @@ def _keep_fixed(
         start = start._replace(name=EMPTY)
     if "namespace" in fixed:
         start = start._replace(namespace=EMPTY)
-        namespace = "/<namespace>" if "below" in fixed and around.value not in (None, "", "/") else namespace
+        if "below" in fixed:
+            above = around.value if around.value is not None else make_open_part(around.shown)
+            namespace = join_name("/" + above.strip("/"), namespace.lstrip("/"))
     return start, namespace
 
 
