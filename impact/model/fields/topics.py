@@ -17,7 +17,7 @@ from ...facts.store import Store, recall
 from ..flow.code import Fn, Variable, get_tail
 from ..flow.definitions import describe_interfaces
 from ..flow.endpoints import Site, Statement
-from ..flow.graph import Endpoint, Graph, Publish
+from ..flow.graph import LOST_INCLUDE, Endpoint, Graph, Publish, Unresolved
 from ..flow.join import Join
 from ..flow.workspace import get_facts, get_flow, list_code
 from ..workspace import Workspace
@@ -37,7 +37,7 @@ def report_fields(workspace: Workspace, graph: Graph, store: Store | None, jobs:
     """The fields of all topics of a workspace. graph: of its code, or of what launch files start. store: remembers the
     report by the content that it was made from."""
     flow = get_flow(workspace)
-    key = flow.key + _make_graph_key(graph)
+    key = flow.key + _make_graph_key(graph, list_foreign(workspace))
 
     def make() -> FieldReport:
         return TopicReader(workspace, flow.code, graph, extract_uses(workspace, jobs)).report()
@@ -60,9 +60,8 @@ def list_unset_fields(workspace: Workspace, topic: TopicFields) -> Iterator[tupl
     unsure = any(one.how in _UNSURE or one.implied for one in own) or any(
         one.type in (topic.type, "") and one.how in _UNSURE and _may_be(one.topic, topic.topic) for one in ends
     )
-    lost = any(
-        one.what.startswith(("publisher", "publish", "started node")) for one in flow.system.coverage.unresolved
-    )
+    lost = any(one.what.startswith(("publisher", "publish")) for one in flow.system.coverage.unresolved)
+    lost = lost or bool(list_foreign(workspace))
     if not topic.publishers or unsure or lost or any(one.unknown for one in topic.publishers):
         return
     stated = {(one.path, one.line) for one in topic.publishers}
@@ -77,12 +76,21 @@ def list_unset_fields(workspace: Workspace, topic: TopicFields) -> Iterator[tupl
             yield read.field, read
 
 
+@cache_in_derived
+def list_foreign(workspace: Workspace) -> tuple[Unresolved, ...]:
+    """What launch files start or include whose code is not here, and which may publish and subscribe to anything."""
+    flow = get_flow(workspace)
+    graphs = [graph for one in flow.launches for graph in (one.graph, one.possible) if graph is not None]
+    rows = (row for graph in (flow.system, *graphs) for row in graph.coverage.unresolved)
+    return tuple(dict.fromkeys(row for row in rows if row.what.startswith(("started ", LOST_INCLUDE))))
+
+
 def _get_place(one: FieldAt) -> tuple[str, int, str]:
     return one.path, one.line, one.field
 
 
-def _make_graph_key(graph: Graph) -> bytes:
-    return hashlib.sha1(msgspec.msgpack.encode((graph.endpoints, graph.publishes, graph.nodes))).digest()
+def _make_graph_key(graph: Graph, foreign: tuple[Unresolved, ...]) -> bytes:
+    return hashlib.sha1(msgspec.msgpack.encode((graph.endpoints, graph.publishes, graph.nodes, foreign))).digest()
 
 
 def extract_uses(workspace: Workspace, jobs: int | None = None) -> dict[str, FieldFile]:
@@ -103,7 +111,7 @@ class TopicReader:
     """Reads the topics of a graph. files: field facts by path."""
 
     def __init__(self, workspace: Workspace, join: Join, graph: Graph, files: dict[str, FieldFile]):
-        self.join, self.graph = join, graph
+        self.join, self.graph, self.foreign = join, graph, list_foreign(workspace)
         types = {one.type for one in graph.endpoints if "/" in one.type}
         shapes = Shapes(describe_interfaces(workspace, sorted(("topic", type_) for type_ in types)))
         self.shapes = shapes
@@ -162,8 +170,12 @@ class TopicReader:
         for lost in self.graph.coverage.unresolved:
             if lost.what in ("subscriber name", "subscriber topic", "subscriber type"):
                 yield f"the name or type that {lost.path}:{lost.line} subscribes to is not known"
-            elif lost.what == "started node":
+        rows = (one for one in self.graph.coverage.unresolved if one.what.startswith(("started ", LOST_INCLUDE)))
+        for lost in dict.fromkeys((*rows, *self.foreign)):
+            if lost.what.startswith("started "):
                 yield f"{lost.path}:{lost.line} starts `{lost.written or 'a node'}`, whose code is not here"
+            else:
+                yield f"{lost.path}:{lost.line} includes `{lost.written or 'a launch file'}`, which is not here"
 
     @cached_property
     def _waits(self) -> list[tuple[str, frozenset[str]]]:
