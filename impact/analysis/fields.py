@@ -58,7 +58,7 @@ def collect_fields(
     chosen = [close(one) if one.topic in known else one for one in found.topics if not topics or one.topic in topics]
     unknown = tuple(row for row in found.unknown if not topics or row[0] in topics)
     sizes = {(one.topic, one.type): size for one in chosen if (size := definitions.measure(one, length)) is not None}
-    return FieldAnswer(FieldReport(tuple(chosen), unknown), sizes)
+    return FieldAnswer(FieldReport(tuple(chosen), unknown, () if topics else found.unnamed), sizes)
 
 
 def read_section(data: bytes | None) -> Section | None:

@@ -9,7 +9,6 @@ from codecs import BOM_UTF8
 from ..rules.fix_actions import Edit
 from .cpp_source import EditRefused
 
-
 _CODING = re.compile(rb"[ \t\f]*#.*?coding[:=][ \t]*[-\w.]+")
 
 

@@ -26,7 +26,7 @@ from .session import Prepared, write_copy
 _TOPLEVEL = ("/opt/ros/noetic/share", "/opt/ros/melodic/share", "/usr/share")
 _NEEDS = "catkin, cmake and a compiler; on Debian: apt install catkin libroscpp-dev ros-message-generation"
 _ERROR = re.compile(r"\berror\b|\bError\b|No rule|not found", re.ASCII)
-_GOAL = re.compile(r"-\d+-\d{9,}\.\d+\Z")
+_GOAL = re.compile(r"(?<=-)\d{9,}\.\d+\Z")
 _BUILD_SECONDS = 1_800
 _MOST_BYTES = 1_000_000_000
 Say = Callable[[str], None]
@@ -306,7 +306,7 @@ def leave_out_run(topic: str, fields: Any) -> Any:
     """A message without what differs from run to run: numbers that actionlib makes of the time for its goals, and in
     logs the lines of the source, which move where code is added, and the order in which a node names its topics."""
     if isinstance(fields, str):
-        return _GOAL.sub("-now", fields)
+        return _GOAL.sub("now", fields)
     if isinstance(fields, list):
         return [leave_out_run("", one) for one in fields]
     if not isinstance(fields, dict):

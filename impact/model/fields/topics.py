@@ -135,7 +135,16 @@ class TopicReader:
                 unknown.append(key)
                 continue
             found.append(self._make_topic(topic, type_, subscribers.get(key, []), publishers.get(key, [])))
-        return FieldReport(tuple(found), tuple(unknown))
+        return FieldReport(tuple(found), tuple(unknown), tuple(self._list_unnamed()))
+
+    def _list_unnamed(self) -> Iterator[TopicFields]:
+        """What subscribers read whose topic is not known, by type."""
+        ends = [one for one in self.graph.endpoints if one.role == "subscriber" and not one.topic and not one.implied]
+        for type_, rows in sorted(group_pairs((one.type, one) for one in ends if "/" in one.type).items()):
+            if self.shapes.is_known(type_):
+                leaves = self.shapes.list_leaves(type_)
+                read = tuple(self._make_subscriber(one, type_, leaves) for one in rows)
+                yield TopicFields("", type_, tuple(map(show, leaves)), read, (), (), ("its name is not known",))
 
     def _group(self, role: str) -> dict[tuple[str, str], list[Endpoint]]:
         rows = (one for one in self.graph.endpoints if one.role == role and one.topic and "/" in one.type)
