@@ -40,9 +40,10 @@ def collect_fields(
     length: int = 10, jobs: int | None = None, progress: Callable[[int, int], None] | None = None,
     follow_links: bool = False,
 ) -> FieldAnswer:  # fmt: skip
-    """The fields of the topics of the workspace at a path. topics: these alone, by name; closed: topics, or
-    patterns of them, that nobody else subscribes to, as the user knows, besides those of rosimpact.toml. length: of strings and arrays, for sizes.
-    The others as for check. Raises CheckError, ConfigError and TreeError with a text for the user."""
+    """The fields of the topics of the workspace at a path. topics: these alone, by name; closed: topics, or patterns of
+    them, that nobody else subscribes to, as the user knows, besides those of rosimpact.toml. length: of strings and
+    arrays, for sizes. The others as for check. Raises CheckError, ConfigError and TreeError with a text for the
+    user."""
     tree = open_tree(path, rev, follow_links=follow_links)
     settings = load_settings(path, tree, config, follow_links=follow_links)
     with Store() as store:

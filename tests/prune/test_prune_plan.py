@@ -521,7 +521,8 @@ def test_what_may_be_the_one_field_of_a_message_is_not_wrapped(tmp_path):
 
 
 RELEASED = {
-    "src/nodes/package.xml": """<package format="2"><name>nodes</name><version>1.0.0</version><description>d</description>
+    "src/nodes/package.xml": """<package format="2"><name>nodes</name><version>1.0.0</version>
+  <description>d</description>
   <maintainer email="a@b.org">m</maintainer><license>BSD</license>
   <buildtool_depend>catkin</buildtool_depend>
   <depend>sensor_msgs</depend>
@@ -546,7 +547,8 @@ int main(int argc, char** argv) {
   imu.publish(sensor_msgs::Imu());
 }
 """,
-    "src/scripts/package.xml": """<package format="2"><name>scripts</name><version>1.0.0</version><description>d</description>
+    "src/scripts/package.xml": """<package format="2"><name>scripts</name><version>1.0.0</version>
+  <description>d</description>
   <maintainer email="a@b.org">m</maintainer><license>BSD</license>
   <buildtool_depend>catkin</buildtool_depend>
   <depend>nav_msgs</depend>

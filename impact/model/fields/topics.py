@@ -116,7 +116,7 @@ class TopicReader:
         shapes = Shapes(describe_interfaces(workspace, sorted(("topic", type_) for type_ in types)))
         self.shapes = shapes
         self.reader = FieldReader(join.code, Uses(join.code, files), shapes)
-        self._readings: dict[tuple[tuple[str, ...], str], Reading] = {}
+        self._readings: dict[tuple[tuple[str, ...], str, tuple[int, int] | None], Reading] = {}
         for one in graph.endpoints:
             for fn in self.list_callbacks(one) if one.role == "subscriber" and one.type else ():
                 names = select_parameters(fn, one.type, join.code)
@@ -179,8 +179,8 @@ class TopicReader:
         for lost in self.graph.coverage.unresolved:
             if lost.what in ("subscriber name", "subscriber topic", "subscriber type"):
                 yield f"the name or type that {lost.path}:{lost.line} subscribes to is not known"
-        rows = (one for one in self.graph.coverage.unresolved if one.what.startswith(("started ", LOST_INCLUDE)))
-        for lost in dict.fromkeys((*rows, *self.foreign)):
+        own = (one for one in self.graph.coverage.unresolved if one.what.startswith(("started ", LOST_INCLUDE)))
+        for lost in dict.fromkeys((*own, *self.foreign)):
             if lost.what.startswith("started "):
                 yield f"{lost.path}:{lost.line} starts `{lost.written or 'a node'}`, whose code is not here"
             else:
@@ -237,11 +237,12 @@ class TopicReader:
         if not callbacks:
             why = endpoint.reason or ("the framework reads it" if endpoint.implied else "its callback is not known")
             return Reading({}, {}, (Escape((), why, endpoint.path, endpoint.line),))
-        key = tuple(fn.place for fn in callbacks), type_
+        position = self._find_position(endpoint)
+        key = tuple(fn.place for fn in callbacks), type_, position
         known = self._readings.get(key)
         if known is None:
             known = self._readings[key] = self._merge(
-                [self._read_callback(fn, type_) for fn in callbacks]
+                [self._read_callback(fn, type_, position) for fn in callbacks]
             )
         return known._replace(escapes=(*known.escapes, *self._list_filtered(endpoint, type_)))
 
@@ -269,8 +270,17 @@ class TopicReader:
             for header in source.facts.includes
         )
 
-    def _read_callback(self, fn: Fn, type_: str) -> Reading:
+    def _find_position(self, endpoint: Endpoint) -> tuple[int, int] | None:
+        """Which of the messages that a synchronizer gives to its callbacks is a subscriber's, and of how many."""
+        rows = [one for one in self.sites.get((endpoint.path, endpoint.line), ()) if one.role == endpoint.role]
+        filtered = len(rows) == 1 and rows[0].use.row.framework == "message_filters"
+        return self.join.sites.find_position(rows[0]) if filtered else None
+
+    def _read_callback(self, fn: Fn, type_: str, position: tuple[int, int] | None = None) -> Reading:
         names = select_parameters(fn, type_, self.join.code)
+        given = [one.name for one in fn.facts.parameters]
+        if position is not None and position[1] == len(given) and given[position[0]] in names:
+            names = [given[position[0]]]
         if names:
             return self.reader.read_parameter(fn, names, type_)
         if not fn.facts.parameters or all(not one.name for one in fn.facts.parameters):

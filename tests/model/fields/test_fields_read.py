@@ -438,6 +438,43 @@ def test_filters_look_at_the_header(path, code, reads, escapes, tmp_path):
     assert tell(find_subscriber(report(tmp_path, {path: code}))) == (reads, escapes)
 
 
+TWO = """#include <message_filters/synchronizer.h>
+#include <robot/Status.h>
+using Sync = message_filters::Synchronizer<Policy>;
+class Watch {{
+ public:
+  Watch() {{
+    one_.subscribe(nh_, "other", 1);
+    two_.subscribe(nh_, "status", 1);
+    sync_ = std::make_shared<Sync>(Policy(5), one_, two_);
+    sync_->registerCallback({callback});
+  }}
+  void onBoth(const robot::Status::ConstPtr& one, const robot::Status::ConstPtr& two) {{
+    int x = one->level + two->name.size();
+  }}
+  void onSwapped(const robot::Status::ConstPtr& two, const robot::Status::ConstPtr& one) {{ onBoth(one, two); }}
+  ros::NodeHandle nh_;
+  message_filters::Subscriber<robot::Status> one_, two_;
+  std::shared_ptr<Sync> sync_;
+}};
+int main(int argc, char** argv) {{ ros::init(argc, argv, "watch"); Watch watch; ros::spin(); }}
+"""
+
+
+@pytest.mark.parametrize(
+    ("callback", "reads"),
+    [
+        ("std::bind(&Watch::onBoth, this, std::placeholders::_1, std::placeholders::_2)", {"name"}),
+        ("boost::bind(&Watch::onBoth, this, _1, _2)", {"name"}),
+        ("&Watch::onBoth, this", {"name"}),
+        ("boost::bind(&Watch::onSwapped, this, _2, _1)", {"level", "name"}),
+    ],
+)
+def test_a_synchronizer_gives_messages_in_the_order_of_its_filters(callback, reads, tmp_path):
+    found = report(tmp_path, {"src/watch.cpp": TWO.format(callback=callback)})
+    assert tell(find_subscriber(found)) == (reads, {"header.stamp"})
+
+
 @pytest.mark.parametrize(
     ("body", "unread"),
     [
@@ -462,7 +499,8 @@ LAUNCH = """<launch>
     ("more", "why"),
     [
         ("", ""),
-        ('<node pkg="rviz" type="rviz" name="rviz"/>', "robot/launch/all.launch:3 starts `rviz`, whose code is not here"),
+        ('<node pkg="rviz" type="rviz" name="rviz"/>',
+         "robot/launch/all.launch:3 starts `rviz`, whose code is not here"),
         ('<include file="$(find other)/launch/other.launch"/>',
          "robot/launch/all.launch:3 includes `$(find other)/launch/other.launch`, which is not here"),
     ],
