@@ -89,7 +89,7 @@ def _feeds(kept: tuple[Fn, FlowCall | FlowExpr]) -> bool:
     return last not in _CONNECTS and (last != "registerCallback" or "." not in given.callee)
 
 
-def _keeps_order(value: FlowExpr) -> bool:
+def _is_in_order(value: FlowExpr) -> bool:
     """Whether a callback takes what it is called with in that order: a bind may say otherwise."""
     names = [get_tail(part.text) for part in value.parts] if value.kind == "bind" else []
     numbers = [int(name[1:]) for name in names if re.fullmatch(r"_\d+", name)]
@@ -571,7 +571,7 @@ class Sites:
             name = call.callee.rpartition(".")[0]
             if name:
                 joint = code.identify(name, fn)
-                straight[joint] = straight.get(joint, True) and all(map(_keeps_order, call.arguments[:1]))
+                straight[joint] = straight.get(joint, True) and all(map(_is_in_order, call.arguments[:1]))
         found: list[tuple[Variable, ...]] = []
         for joint in straight:
             if not straight[joint]:
