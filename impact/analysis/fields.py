@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import NamedTuple
 
@@ -39,9 +40,10 @@ def collect_fields(
     length: int = 10, jobs: int | None = None, progress: Callable[[int, int], None] | None = None,
     follow_links: bool = False,
 ) -> FieldAnswer:  # fmt: skip
-    """The fields of the topics of the workspace at a path. topics: these alone, by name; closed: topics that nobody
-    else subscribes to, as the user knows, besides those of rosimpact.toml. length: of strings and arrays, for sizes.
-    The others as for check. Raises CheckError, ConfigError and TreeError with a text for the user."""
+    """The fields of the topics of the workspace at a path. topics: these alone, by name; closed: topics, or patterns of
+    them, that nobody else subscribes to, as the user knows, besides those of rosimpact.toml. length: of strings and
+    arrays, for sizes. The others as for check. Raises CheckError, ConfigError and TreeError with a text for the
+    user."""
     tree = open_tree(path, rev, follow_links=follow_links)
     settings = load_settings(path, tree, config, follow_links=follow_links)
     with Store() as store:
@@ -51,14 +53,20 @@ def collect_fields(
     names = {one.topic for one in found.topics} | {topic for topic, _ in found.unknown}
     for option, asked in (("--topic", topics), ("--assume-closed", closed)):
         for name in asked:
-            if name not in names:
+            if name not in names and not (option != "--topic" and select_topics([name], names)):
                 near = _find_near(name, names)
                 raise CheckError(f"{option} {name}: no such topic; {near or 'list them without --topic'}")
-    known = frozenset((*closed, *settings.closed_topics))
+    known = select_topics((*closed, *settings.closed_topics), names)
     chosen = [close(one) if one.topic in known else one for one in found.topics if not topics or one.topic in topics]
     unknown = tuple(row for row in found.unknown if not topics or row[0] in topics)
     sizes = {(one.topic, one.type): size for one in chosen if (size := definitions.measure(one, length)) is not None}
-    return FieldAnswer(FieldReport(tuple(chosen), unknown), sizes)
+    return FieldAnswer(FieldReport(tuple(chosen), unknown, () if topics else found.unnamed), sizes)
+
+
+def select_topics(patterns: Iterable[str], names: Iterable[str]) -> frozenset[str]:
+    """Those of the topics that a user names: in full, or as the shell would have it, `/camera/*`."""
+    asked = list(patterns)
+    return frozenset(name for name in names if any(fnmatchcase(name, pattern) for pattern in asked))
 
 
 def read_section(data: bytes | None) -> Section | None:

@@ -332,7 +332,8 @@ def fields(
     topic: list[str] = _make_option("Only this topic; `*` matches any text. May be repeated or comma-separated."),
     limit: int | None = _make_option("With --bag: only so many messages, the first ones.", min=1),
     assume_closed: list[str] = _make_option(
-        "Nobody outside of this workspace subscribes to this topic. May be repeated.", "--assume-closed"
+        "Nobody outside of this workspace subscribes to this topic; `*` matches any text. May be repeated.",
+        "--assume-closed",
     ),
     length: int = _make_option("Elements of strings and arrays, for the sizes that are shown.", default=10, min=0),
     rev: _Revision = "",
@@ -391,7 +392,8 @@ def prune(
     path: _Workspace = Path("."),
     topic: list[str] = _make_option("Only this topic. May be repeated."),
     assume_closed: list[str] = _make_option(
-        "Nobody outside of this workspace subscribes to this topic. May be repeated.", "--assume-closed"
+        "Nobody outside of this workspace subscribes to this topic; `*` matches any text. May be repeated.",
+        "--assume-closed",
     ),
     apply: bool = _make_option("Write the changes to the workspace.", "--apply", default=False),
     out: Path | None = _make_option("Write a changed copy of the workspace to this folder."),

@@ -14,7 +14,7 @@ import msgspec
 from ...edges.console import UserError, escape
 from ...edges.documents import DocumentError, load_json
 from ...edges.files import read_file, write_file
-from ..analysis.fields import KnownMessages, close
+from ..analysis.fields import KnownMessages, close, select_topics
 from ..analysis.fix import make_unified_diff
 from ..analysis.session import load_settings, open_tree
 from ..facts.store import Store
@@ -55,7 +55,6 @@ def prepare(
     UserError with a text for the user."""
     tree = open_tree(path, "", follow_links=follow_links)
     settings = load_settings(path, tree, config, follow_links=follow_links)
-    known = frozenset((*closed, *settings.closed_topics))
     with Store() as store:
         workspace = link_for_flow(tree, store, jobs, progress)
         graph = make_graph(workspace, store, jobs=jobs or 1)
@@ -63,8 +62,9 @@ def prepare(
         report = reader.report()
         names = {one.topic for one in report.topics} | {topic for topic, _ in report.unknown}
         for name in (*topics, *closed):
-            if name not in names:
+            if name not in names and (name in topics or not select_topics([name], names)):
                 raise UserError(f"{escape(name)}: no such topic; `rosimpact fields` lists those there are")
+        known = select_topics((*closed, *settings.closed_topics), names)
         rows = tuple(close(one) if one.topic in known else one for one in report.topics)
         planner = Planner(
             workspace, reader, FieldReport(rows, report.unknown), known, lambda each: _read(tree, each), length,

@@ -306,6 +306,8 @@ class Join:
         for start in launch.started:
             at = self._locate(start.at)
             if start.kind == "process":
+                if not start.package.value or not self._select_fitting(start):
+                    missing.append(Unresolved("started command", "it may be a node", *at, start.executable.shown))
                 continue
             what = start.plugin.value or start.executable.value
             if what is None:
