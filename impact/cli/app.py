@@ -105,6 +105,13 @@ _FailOn = Annotated[
 ]
 _Jobs = Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")]
 _Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")]
+_AssumeClosed = Annotated[
+    list[str],
+    typer.Option("--assume-closed", help="Nobody outside of this workspace subscribes to this topic. May be repeated."),
+]
+_SizeLength = Annotated[
+    int, typer.Option("--length", min=0, help="Elements of strings and arrays, for the sizes that are shown.")
+]
 
 # Options whose values may hold commas; others that may be repeated take several names at once.
 _WITH_COMMAS = frozenset(("target", "base", "set_", "names", "launch"))
@@ -331,10 +338,8 @@ def fields(
     ),
     topic: list[str] = _make_option("Only this topic; `*` matches any text. May be repeated or comma-separated."),
     limit: int | None = _make_option("With --bag: only so many messages, the first ones.", min=1),
-    assume_closed: list[str] = _make_option(
-        "Nobody outside of this workspace subscribes to this topic. May be repeated.", "--assume-closed"
-    ),
-    length: int = _make_option("Elements of strings and arrays, for the sizes that are shown.", default=10, min=0),
+    assume_closed: _AssumeClosed = [],  # noqa: B006
+    length: _SizeLength = 10,
     rev: _Revision = "",
     config: _Config = None,
     follow_links: _FollowLinks = False,
@@ -352,9 +357,7 @@ def fields(
 def prune(
     path: _Workspace = Path("."),
     topic: list[str] = _make_option("Only this topic. May be repeated."),
-    assume_closed: list[str] = _make_option(
-        "Nobody outside of this workspace subscribes to this topic. May be repeated.", "--assume-closed"
-    ),
+    assume_closed: _AssumeClosed = [],  # noqa: B006
     apply: bool = _make_option("Write the changes to the workspace.", "--apply", default=False),
     out: Path | None = _make_option("Write a changed copy of the workspace to this folder."),
     undo: bool = _make_option("Take back what --apply wrote.", "--undo", default=False),
@@ -369,7 +372,7 @@ def prune(
     ),
     seconds: float = _make_option("With --verify: how long both run.", default=10.0, min=1.0),
     keep_builds: Path | None = _make_option("With --verify: a folder for both versions.", "--keep-builds"),
-    length: int = _make_option("Elements of strings and arrays, for the sizes that are shown.", default=10, min=0),
+    length: _SizeLength = 10,
     config: _Config = None,
     follow_links: _FollowLinks = False,
     format: str = _make_option("One of text, json, patch.", "--format", "-f", default="text"),
