@@ -370,8 +370,29 @@ def prune(
         "With --verify: start this, 'PACKAGE/PROGRAM ARGUMENTS' or a command of the shell such as 'rosbag play a.bag' "
         "or 'roslaunch a.launch'. May be repeated."
     ),
-    seconds: float = _make_option("With --verify: how long both run.", default=10.0, min=1.0),
+    seconds: float = _make_option(
+        "With --verify: how long both run. With --measure: measured seconds of each run.", default=10.0, min=1.0
+    ),
     keep_builds: Path | None = _make_option("With --verify: a folder for both versions.", "--keep-builds"),
+    measure: bool = _make_option(
+        "Send each topic's whole and lighter message over a link, as `measure network` does, and say what the plan "
+        "gains.",
+        "--measure",
+        default=False,
+    ),
+    bag: Path | None = _make_option(
+        "With --measure: send the messages of this bag; without one they are filled as the publishers fill them."
+    ),
+    rate: float | None = _make_option(
+        "With --measure: messages per second; default: as in the bag, else 50.", min=0.001
+    ),
+    repeat: int | None = _make_option("With --measure: repetitions; intervals are over them [default: 3].", min=1),
+    nodes: str = _make_option(
+        "With --measure: roscpp, rospy or dds; default: roscpp for ROS 1, dds for ROS 2.", default=""
+    ),
+    link: str = _make_option("With --measure: rate of each link, such as 54mbit [default: 100mbit].", default=""),
+    loopback: bool = _make_option("With --measure: no link, which needs no root.", "--loopback", default=False),
+    results: Path | None = _make_option("With --measure: a folder for the results, which a later run continues."),
     length: _SizeLength = 10,
     config: _Config = None,
     follow_links: _FollowLinks = False,

@@ -16,6 +16,7 @@ from ...edges.documents import DocumentError, load_json
 from ...edges.files import read_file, write_file
 from ..analysis.fields import KnownMessages, open_fields
 from ..analysis.fix import make_unified_diff
+from ..model.fields.report import FieldReport
 from ..model.fields.topics import TopicReader, extract_uses
 from ..model.flow.workspace import get_flow
 from ..tree.paths import Tree
@@ -28,10 +29,13 @@ _MOST_BYTES = 100_000_000
 
 
 class Prepared(NamedTuple):
-    """A plan with the bytes of the files that it changes, as they are now."""
+    """A plan with the bytes of the files that it changes, as they are now. report: the fields that it rests on;
+    ros: the generation of the workspace."""
 
     plan: PrunePlan
     originals: dict[str, bytes]
+    report: FieldReport
+    ros: int
 
 
 class _Change(msgspec.Struct, frozen=True):
@@ -57,7 +61,7 @@ def prepare(
             KnownMessages(workspace, tree).find,
         )  # fmt: skip
         plan = planner.plan(topics)
-    return Prepared(plan, {each: _read(tree, each) or b"" for each in plan.changed})
+    return Prepared(plan, {each: _read(tree, each) or b"" for each in plan.changed}, report, workspace.ros)
 
 
 def _read(tree: Tree, path: str) -> bytes | None:
