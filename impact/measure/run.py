@@ -6,6 +6,7 @@ import contextlib
 import datetime
 import os
 import platform
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Protocol
@@ -16,7 +17,7 @@ from ...edges.version import __version__
 from . import namespaces, ros1
 from .bench import Bench, LocalPublishers, LocalSubscriber, Messages, count_messages
 from .children import hold_signals
-from .clocks import ClockOffset
+from .clocks import ClockOffset, join_offsets
 from .intervals import NetworkResult, PublishReport, compute_result
 from .plan import FULL, PRUNED, SYNTHETIC, Conditions, NetworkCell, NetworkPlan
 from .results import ResultsFile, RunHeader
@@ -160,12 +161,13 @@ def _run_cell(
 ) -> NetworkResult:  # fmt: skip
     # A topic of its own: of an earlier cell the master may still know nodes that have ended.
     topic = f"/rosimpact_measure/{_name_topic(cell, repetition, attempt)}"
-    offset = read_offset()
+    before, begun = read_offset(), time.monotonic()
     subscriber = LocalSubscriber(bench, cell, topic)
     try:
         publishers.start(cell, topic)
         report = publishers.publish()
         samples = subscriber.finish()
+        offset = join_offsets(before, read_offset(), time.monotonic() - begun)
     finally:
         with hold_signals():
             publishers.stop()

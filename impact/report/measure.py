@@ -65,6 +65,9 @@ def describe_conditions(header: RunHeader, summaries: Iterable[CellSummary]) -> 
         f"{conditions.warm_up:g} s of warm-up, repetitions: {times}; ± is the 95 % interval of Student's t over them",
         f"clock: {header.clock}",
     ]
+    unsure = max((each.clock_uncertainty_ms for each in summaries), default=0)
+    if unsure:
+        lines.append(f"latencies are known to within ±{unsure:.2f} ms, as the offset of both clocks is")
     load, cores = max((each.load for each in summaries), default=0), header.machine.get("cores", "0")
     if load > float(cores) > 0:
         lines.append(f"other work ran beside it: the load average reached {load:.0f} on {cores} cores")

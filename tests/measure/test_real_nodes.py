@@ -10,6 +10,7 @@ import sys
 import time
 
 import pytest
+from rosimpact.impact.measure.children import find_program, run_program
 from rosimpact.impact.measure.namespaces import list_namespaces
 from rosimpact.impact.measure.results import load_results
 
@@ -122,3 +123,60 @@ def test_two_sides_that_speak_over_the_network(roscpp, say, tmp_path):
     finally:
         publisher.send_signal(signal.SIGINT)
         assert publisher.wait(30) == 130
+
+
+@pytest.fixture
+def machines(allowed):
+    """Two machines as far as the network goes: namespaces with a cable between them and no route elsewhere. Gives what
+    a command begins with to be run on each, and their addresses."""
+    names = [f"two-machines-{os.getpid()}-{side}" for side in "ab"]
+    ip = find_program("ip")
+    try:
+        for name in names:
+            run_program([ip, "netns", "add", name])
+        cable = ("type", "veth", "peer", "name", "eth0", "netns", names[1])
+        run_program([ip, "link", "add", "eth0", "netns", names[0], *cable])
+        for last, name in enumerate(names, 1):
+            run_program([ip, "-n", name, "address", "add", f"10.78.0.{last}/24", "dev", "eth0"])
+            for device in ("lo", "eth0"):
+                run_program([ip, "-n", name, "link", "set", device, "up"])
+        yield [((ip, "netns", "exec", name), f"10.78.0.{last}") for last, name in enumerate(names, 1)]
+    finally:
+        for name in names:
+            subprocess.run([ip, "netns", "delete", name], check=False, capture_output=True)
+
+
+def test_two_machines_each_started_by_hand(machines, rospy, say, tmp_path):
+    """Nothing is shared but the cable: the master, the publishing side and the subscriber find each other over it."""
+    say("measure", "show", tmp_path / "none.jsonl")  # sets the cache up, and runs nothing
+    (robot, address), (desk, own) = machines
+    command = [sys.executable, "-c", START, "measure"]
+    # A robot at a cable has no route elsewhere, and has to be told which address the other machine sees.
+    alone = subprocess.run([*robot, *command, "publisher", "--nodes", "rospy"], capture_output=True, text=True)
+    assert alone.returncode == 2 and "give it with --address" in alone.stderr
+    serving = subprocess.Popen(
+        [*robot, *command, "publisher", "--nodes", "rospy", "--address", address], stderr=subprocess.PIPE, text=True
+    )
+    try:
+        assert serving.stderr is not None
+        line = serving.stderr.readline()
+        master = re.search(r"rosimpact measure subscriber --master (http://10\.78\.0\.1:11311)$", line)
+        assert master, line
+        output = tmp_path / "two.jsonl"
+        subscriber = subprocess.run(
+            [*desk, *command, "subscriber", "--nodes", "rospy", "--master", master[1], "--output", output, *SIZES,
+             *SHORT], capture_output=True, text=True, timeout=300, cwd=tmp_path,
+        )  # fmt: skip
+        assert subscriber.returncode == 0, subscriber.stderr
+        assert "two machines: CLOCK_REALTIME on both" in subscriber.stdout
+        assert "latencies are known to within ±" in subscriber.stdout
+        found = read(output)
+        assert (found["full"].bytes, found["pruned"].bytes) == (60_032, 20_024)
+        for result in found.values():
+            # One clock after all, so that the offset is 0 within what is said of it.
+            assert abs(result.clock_offset_ms) <= result.clock_uncertainty_ms + 0.001
+            assert result.delivered > 0 and result.latency_mean_ms > -result.clock_uncertainty_ms
+        assert serving.stderr.readline() == f"{own} is connected\n"
+    finally:
+        serving.send_signal(signal.SIGINT)
+        assert serving.wait(30) == 130
