@@ -89,7 +89,7 @@ def render_plan_json(plan: PrunePlan, version: str, gains: Sequence[TopicGain] =
         "plans": [
             {
                 **one._asdict(),
-                **({"gains": [to_builtins(gain) for gain in gains if gain.topic in one.topics]} if gains else {}),
+                **({"gains": [to_builtins(gain._asdict()) for gain in gains if gain.topic in one.topics]} if gains else {}),
             }
             for one in plan.plans
         ],
