@@ -16,7 +16,7 @@ SYNTHETIC = "synthetic"
 TAIL = 0.5
 """Seconds for which publishers go on behind what is measured, so that the last messages find the queues as full as the
 others did."""
-OVERHEAD = 1.7
+OVERHEAD = 1.1
 """Seconds that starting and stopping the nodes of a cell takes, about."""
 _MBIT = 1_000_000
 _UNITS = {"kbit": 1_000, "mbit": _MBIT, "gbit": 1_000 * _MBIT}
