@@ -70,11 +70,11 @@ def run_network(plan: NetworkPlan, messages: Messages, output: Path, progress: P
     time. Raises UserError."""
     check_needs(plan.conditions)
     file = ResultsFile(output, make_header(plan.conditions, ONE_CLOCK))
+    if removed := namespaces.remove_leftovers():
+        progress(f"removed what earlier runs left behind: {', '.join(removed)}")
     left = list_left(plan, file, progress)
     if not left:
         return file
-    if removed := namespaces.remove_leftovers():
-        progress(f"removed what earlier runs left behind: {', '.join(removed)}")
     with namespaces.open_work_folder() as place, _open_until_closed() as opened:
         progress("preparing nodes")
         (place / "logs").mkdir()

@@ -86,18 +86,18 @@ def render_plan_json(plan: PrunePlan, version: str, gains: Sequence[TopicGain] =
     document = {
         "schema": SCHEMA,
         "tool": {"name": "rosimpact", "version": version},
-        "plans": [
-            {
-                **one._asdict(),
-                **({"gains": [to_builtins(gain._asdict()) for gain in gains if gain.topic in one.topics]} if gains else {}),
-            }
-            for one in plan.plans
-        ],
+        "plans": [one._asdict() | _list_gains(one, gains) for one in plan.plans],
         "refusals": [one._asdict() for one in plan.refusals],
         "changed": sorted(plan.changed),
         "created": sorted(plan.created),
     }
     return format_json(document) + "\n"
+
+
+def _list_gains(one: TopicPlan, gains: Sequence[TopicGain]) -> dict[str, object]:
+    """The gains of a lighter message's topics; nothing where none was measured."""
+    own = [to_builtins(gain._asdict()) for gain in gains if gain.topic in one.topics]
+    return {"gains": own} if own else {}
 
 
 def render_verification(done: Verification, style: Style = WIDE) -> str:

@@ -67,6 +67,33 @@ def test_a_run_over_a_link_is_stopped_cleaned_up_and_continued(allowed, rospy, s
     assert "3 fields, full" in shown.out and "links of 50mbit" in shown.out
 
 
+def test_what_a_killed_run_leaves_is_removed_by_the_next_which_continues(allowed, rospy, say, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    say("measure", "network", "--loopback", *SIZES, *SHORT, "--rates", "bad")  # sets the cache up, and runs nothing
+    output = tmp_path / "network.jsonl"
+    arguments = ("network", *SIZES, *SHORT, "--repeat", "2", "--link", "50mbit", "--nodes", "rospy")
+    killed = start_command(tmp_path, *arguments)
+    wait_for(lambda: output.exists() and output.read_bytes().count(b"\n") == 3, killed)  # in the midst of a repetition
+    left = [name for name in list_namespaces() if f"-{killed.pid}-" in name]
+    killed.kill()
+    killed.communicate(timeout=30)
+    assert len(left) == 3 and set(left) <= set(list_namespaces())
+    with open(output, "ab") as file:
+        file.write(b'{"repetition":1,"publish')  # as far as the disk got
+
+    said = say("measure", *arguments, "--format", "json")
+    assert said.status == 0, said.err
+    assert "removed what earlier runs left behind: " in said.err and all(name in said.err for name in left)
+    assert "2 runs of a cell to measure" in said.err and "2 of 4 are in network.jsonl already" in said.err
+    assert set(left) & set(list_namespaces()) == set()
+    found = [(result.repetition, result.variant) for result in load_results(output)[1]]
+    assert found == [(0, "full"), (0, "pruned"), (1, "full"), (1, "pruned")]
+    # Nothing is measured again, and what is removed does not depend on that.
+    again = say("measure", *arguments, "--format", "json")
+    assert again.status == 0 and "0 runs of a cell to measure" in again.err
+    assert again.out == said.out
+
+
 def test_a_slow_callback_fills_the_queue_of_the_subscriber_alone(allowed, roscpp, say, tmp_path):
     output = tmp_path / "slow.jsonl"
     said = say(
