@@ -2,12 +2,14 @@
 
 What is compiled is one node of roscpp; the link is tried by rospy, whose nodes are not."""
 
+import json
 import os
 import re
 import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 from rosimpact.impact.measure.children import find_program, run_program
@@ -150,6 +152,21 @@ def test_two_sides_that_speak_over_the_network(roscpp, say, tmp_path):
     finally:
         publisher.send_signal(signal.SIGINT)
         assert publisher.wait(30) == 130
+
+
+def test_what_a_plan_gains(rospy, say, tmp_path):
+    fleet = Path(__file__).parents[2] / "examples" / "fleet"
+    given = ("prune", fleet, "--topic", "/track", "--measure", "--loopback", "--nodes", "rospy", "--seconds", "1")
+    said = say(*given, "--repeat", "2", "--rate", "20", "--results", tmp_path, "--format", "json")
+    assert said.status == 0, said.err
+    (gain,) = json.loads(said.out)["plans"][0]["gains"]
+    # 20, a text of 5; two arrays of 10 float64 and a text of 10, of which one array is kept.
+    assert (gain["full"]["bytes"], gain["pruned"]["bytes"]) == (20 + 9 + 2 * 84 + 14, 20 + 9 + 84)
+    for cell in (gain["full"], gain["pruned"]):
+        assert cell["repetitions"] == 2 and cell["latency"]["mean"]["low"] <= cell["latency"]["mean"]["high"]
+    again = say(*given, "--repeat", "2", "--rate", "20", "--results", tmp_path)
+    assert again.status == 0 and "0 runs of a cell to measure" in again.err
+    assert "measured  /track  at 20 Hz, as src/fleet_eye/src/eye.cpp:65 fills it: vehicle 5" in again.out
 
 
 @pytest.fixture
