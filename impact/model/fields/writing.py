@@ -16,6 +16,7 @@ _MOST = 200
 _SETS = frozenset(("write", "change"))
 _SIZED = frozenset(("resize", "assign"))
 _REPEATED = re.compile(r"\[[^\[\],]*\] ?\* ?([0-9]{1,9})|([0-9]{1,9}) ?\* ?\[[^\[\],]*\]")
+_VECTOR = re.compile(r"(?:std::)?vector(?:<.*>)?")
 _NUMBER = re.compile(r"([0-9]{1,9})[uUlL]*")
 
 
@@ -80,7 +81,7 @@ class _Walk:
             for one in value.parts:
                 if one.kind == "text":
                     self._measure((*path, "[]"), one)
-        elif value.kind == "make" and "vector" in value.text and value.parts:
+        elif value.kind in ("make", "call") and _VECTOR.fullmatch(value.text) and value.parts:
             self._measure_number(path, value.parts[0])
         elif value.kind == "other" and (found := _REPEATED.fullmatch(value.text)):
             self._keep_longest(path, int(found[1] or found[2]))
