@@ -155,11 +155,11 @@ def _add_messages(plan: NetworkPlan, given: dict[str, Any]) -> tuple[NetworkPlan
 def _make_messages(
     path: Path, nodes: str, message: str, keep: str, lengths: Sequence[str], bag: Path | None
 ) -> Messages:  # fmt: skip
-    from ..measure.contents import Filling, make_real_messages
+    from ..measure.contents import MessageFilling, make_real_messages
     from ..measure.gains import list_publishers
 
     publishers = list_publishers(path, message.replace("/msg/", "/")) if bag is None else ()
-    filling = Filling(_parse_lengths(lengths), bag, publishers=publishers)
+    filling = MessageFilling(_parse_lengths(lengths), bag, publishers=publishers)
     found = make_real_messages(message, _split(keep), path, filling, 2 if nodes == "dds" else 1)
     for note in found.notes:
         say(f"rosimpact: {message}: {note}")

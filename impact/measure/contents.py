@@ -39,7 +39,7 @@ def make_synthetic_messages(plan: NetworkPlan) -> Messages:
     return made
 
 
-class Filling(NamedTuple):
+class MessageFilling(NamedTuple):
     """What a real message is filled with. lengths: of arrays and texts by path, as the user gives them. bag: whose
     messages are sent instead; topic: of that topic alone, where one is named. publishers: the statements of a workspace
     that publish it, whose lengths count where the user gives none. length: of what these set, and do not tell how
@@ -61,7 +61,7 @@ class RealMessages(NamedTuple):
     rate: float | None = None
 
 
-def make_real_messages(type_: str, keep: Sequence[str], path: Path, filling: Filling, ros: int) -> RealMessages:
+def make_real_messages(type_: str, keep: Sequence[str], path: Path, filling: MessageFilling, ros: int) -> RealMessages:
     """The message `package/Name`, whole and with some fields alone. path: the workspace. ros: the generation of the
     nodes. Raises UserError."""
     if type_.replace("/msg/", "/").count("/") != 1:
@@ -83,7 +83,7 @@ def make_real_messages(type_: str, keep: Sequence[str], path: Path, filling: Fil
     return RealMessages(made, notes, rate)
 
 
-def _choose_lengths(type_: str, schema: SentSchema, filling: Filling) -> tuple[dict[str, int], list[str]]:
+def _choose_lengths(type_: str, schema: SentSchema, filling: MessageFilling) -> tuple[dict[str, int], list[str]]:
     """The lengths of arrays and texts, and notes on them: those that the user gives, else those of the code that
     publishes the message. What nobody sets is empty, as in the message itself. Raises UserError."""
     known = list(dict.fromkeys(list_lengths(schema)))

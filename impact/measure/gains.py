@@ -14,7 +14,7 @@ from ..model.fields.report import FieldReport, PublisherFields
 from ..prune.planner import TopicPlan
 from ..prune.session import Prepared
 from . import ros1
-from .contents import Filling, RealMessages, add_contents, make_real_messages
+from .contents import MessageFilling, RealMessages, add_contents, make_real_messages
 from .intervals import CellSummary, summarize
 from .plan import FULL, PRUNED, Conditions, NetworkPlan
 from .results import RunHeader, load_results
@@ -75,7 +75,7 @@ def measure_gains(
     ready: list[_Prepared] = []
     for plan, topic in ((each, topic) for each in prepared.plan.plans for topic in each.topics):
         publishers = _select_publishers(prepared.report, plan.type, topic)
-        filling = Filling(bag=bag, topic=topic, publishers=publishers, length=length)
+        filling = MessageFilling(bag=bag, topic=topic, publishers=publishers, length=length)
         try:
             found = make_real_messages(plan.type, plan.keep, path, filling, 2 if conditions.nodes == "dds" else 1)
         except UserError as error:

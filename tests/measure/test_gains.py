@@ -63,7 +63,7 @@ FILLED = {
 @pytest.mark.parametrize("case", FILLED)
 def test_a_message_is_filled_as_its_publishers_fill_it(own, case):
     publishers, lengths, sizes, told = FILLED[case]
-    filling = contents.Filling(lengths, publishers=publishers)
+    filling = contents.MessageFilling(lengths, publishers=publishers)
     found = contents.make_real_messages("own_msgs/Sweep", ["ranges"], own, filling, 1)
     assert found.messages[0, "full"].bytes == 20 + sum(sizes)
     assert found.messages[0, "pruned"].bytes == 20 + sizes[1]
@@ -205,6 +205,6 @@ def test_a_full_message_takes_what_the_plan_says(measured, say):
     """Both sizes are those of the plan where all lengths are."""
     (plan,) = prepare(FLEET, topics=("/track",), length=10).plan.plans
     lengths = {name: 10 for name in ("vehicle", "xs", "ys", "notes")}
-    found = contents.make_real_messages(plan.type, plan.keep, FLEET, contents.Filling(lengths), 1).messages
+    found = contents.make_real_messages(plan.type, plan.keep, FLEET, contents.MessageFilling(lengths), 1).messages
     assert found[0, "full"].bytes - 20 == plan.full_bytes
     assert found[0, "pruned"].bytes - 20 == plan.light_bytes
