@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from rosimpact.edges.console import UserError
-from rosimpact.impact.measure import contents, gains
+from rosimpact.impact.measure import contents, gains, run
 from rosimpact.impact.measure.intervals import NetworkResult
 from rosimpact.impact.measure.results import ResultsFile
 from rosimpact.impact.measure.run import ONE_CLOCK, make_header
@@ -90,7 +90,7 @@ def measured(monkeypatch):
     """Runs nothing: each cell takes as long, and drops as much, as its message has bytes."""
     asked = []
 
-    def run(plan, messages, output, progress):
+    def record(plan, messages, output, progress):
         asked.append(plan)
         file = ResultsFile(output, make_header(plan.conditions, ONE_CLOCK))
         for repetition, cell in plan.list_runs():
@@ -104,7 +104,7 @@ def measured(monkeypatch):
             ))  # fmt: skip
         return file
 
-    monkeypatch.setattr(gains, "run_network", run)
+    monkeypatch.setattr(gains, "run_network", record)
     monkeypatch.setattr(gains, "check_needs", lambda conditions: None)
     monkeypatch.setattr(gains, "_prepare_nodes", lambda conditions, ready: None)
     return asked
@@ -172,6 +172,29 @@ def test_messages_of_a_bag(say, measured, tmp_path):
     assert "holds no message of the type fleet_msgs/Report on /report" in found["/report"]["failure"]
     text = say("prune", FLEET, "--measure", "--quiet", "--bag", bag, "--topic", "/report").out
     assert "measured  /report  not: --bag " in text
+
+
+@pytest.mark.parametrize(
+    ("options", "sizes", "told"),
+    [
+        # 20, a text of 5; two arrays of 10 float64 and a text of 10.
+        ([], (20 + 9 + 2 * 84 + 14, 20 + 9 + 84), "as src/fleet_eye/src/eye.cpp:65 fills it: vehicle 5"),
+        (["--length", "xs=100", "--length", "notes=0"], (20 + 9 + 804 + 84 + 4, 20 + 9 + 804), "taken as 10: ys"),
+    ],
+)
+def test_measuring_a_message_by_its_name_fills_it_as_it_is_published(say, monkeypatch, tmp_path, options, sizes, told):
+    monkeypatch.chdir(tmp_path)
+    asked = {}
+
+    def stop(plan, messages, output, progress):
+        asked.update({variant: message.bytes for (_, variant), message in messages.items()})
+        raise UserError("enough")
+
+    monkeypatch.setattr(run, "run_network", stop)
+    said = say("measure", "network", FLEET, "--message", "fleet_msgs/Track", "--keep", "vehicle,xs", *options)
+    assert said.status == 2 and "enough" in said.err
+    assert asked == {"full": sizes[0], "pruned": sizes[1]}
+    assert told in said.err
 
 
 def test_what_measuring_needs_is_said_before_anything_is_run(say, monkeypatch):

@@ -133,7 +133,8 @@ def test_a_real_message_of_a_workspace(tmp_path):
 @pytest.mark.parametrize(("ros", "seq"), [(1, True), (2, False)])
 def test_released_definitions_are_of_the_nodes_generation(tmp_path, ros, seq):
     assert load_shipped().find_history("std_msgs", ros) is not None
-    made = contents.make_real_messages("std_msgs/Header", [], tmp_path, contents.MessageFilling({"frame_id": 1}), ros).messages
+    filling = contents.MessageFilling({"frame_id": 1})
+    made = contents.make_real_messages("std_msgs/Header", [], tmp_path, filling, ros).messages
     names = [field.name for field in made[0, "full"].schema.list_fields()]
     assert ("seq" in names) is seq
     assert (0, "pruned") not in made
