@@ -34,7 +34,8 @@ def render_plan_text(
         lines += lay_out([*head, LinePart(refusal.reason)], style, 0, 4)
     count = format_count(len(plan.plans), "lighter message")
     files = format_count(len(plan.changed) + len(plan.created), "file")
-    lines += _describe_measurement(gains)
+    measured = _describe_measurement(gains)
+    lines += ["", *measured] if measured and lines[-1] else measured
     lines += ["", f"{count}; {files} to change or write"] if plan.plans else ["", "no topic can be made lighter"]
     return "\n".join(lines).lstrip("\n") + "\n" + (f"\n{diff}" if diff else "")
 
@@ -78,7 +79,7 @@ def _describe_measurement(gains: Sequence[TopicGain]) -> list[str]:
     header = next((gain.header for gain in gains if gain.header is not None), None)
     if header is None:
         return []
-    return ["", *describe_conditions(header, cells), "bytes with the 20 that the measurement adds to each message"]
+    return [*describe_conditions(header, cells), "bytes with the 20 that the measurement adds to each message"]
 
 
 def render_plan_json(plan: PrunePlan, version: str, gains: Sequence[TopicGain] = ()) -> str:
