@@ -105,6 +105,16 @@ _FailOn = Annotated[
 ]
 _Jobs = Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")]
 _Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")]
+_AssumeClosed = Annotated[
+    list[str],
+    typer.Option(
+        "--assume-closed",
+        help="Nobody outside of this workspace subscribes to this topic; `*` matches any text. May be repeated.",
+    ),
+]
+_SizeLength = Annotated[
+    int, typer.Option("--length", min=0, help="Elements of strings and arrays, for the sizes that are shown.")
+]
 
 # Options whose values may hold commas; others that may be repeated take several names at once.
 _WITH_COMMAS = frozenset(("target", "base", "set_", "names", "launch"))
@@ -331,11 +341,8 @@ def fields(
     ),
     topic: list[str] = _make_option("Only this topic; `*` matches any text. May be repeated or comma-separated."),
     limit: int | None = _make_option("With --bag: only so many messages, the first ones.", min=1),
-    assume_closed: list[str] = _make_option(
-        "Nobody outside of this workspace subscribes to this topic; `*` matches any text. May be repeated.",
-        "--assume-closed",
-    ),
-    length: int = _make_option("Elements of strings and arrays, for the sizes that are shown.", default=10, min=0),
+    assume_closed: _AssumeClosed = [],  # noqa: B006
+    length: _SizeLength = 10,
     rev: _Revision = "",
     config: _Config = None,
     follow_links: _FollowLinks = False,
@@ -391,10 +398,7 @@ def values(
 def prune(
     path: _Workspace = Path("."),
     topic: list[str] = _make_option("Only this topic. May be repeated."),
-    assume_closed: list[str] = _make_option(
-        "Nobody outside of this workspace subscribes to this topic; `*` matches any text. May be repeated.",
-        "--assume-closed",
-    ),
+    assume_closed: _AssumeClosed = [],  # noqa: B006
     apply: bool = _make_option("Write the changes to the workspace.", "--apply", default=False),
     out: Path | None = _make_option("Write a changed copy of the workspace to this folder."),
     undo: bool = _make_option("Take back what --apply wrote.", "--undo", default=False),
@@ -407,9 +411,30 @@ def prune(
         "With --verify: start this, 'PACKAGE/PROGRAM ARGUMENTS' or a command of the shell such as 'rosbag play a.bag' "
         "or 'roslaunch a.launch'. May be repeated."
     ),
-    seconds: float = _make_option("With --verify: how long both run.", default=10.0, min=1.0),
+    seconds: float = _make_option(
+        "With --verify: how long both run. With --measure: measured seconds of each run.", default=10.0, min=1.0
+    ),
     keep_builds: Path | None = _make_option("With --verify: a folder for both versions.", "--keep-builds"),
-    length: int = _make_option("Elements of strings and arrays, for the sizes that are shown.", default=10, min=0),
+    measure: bool = _make_option(
+        "Send each topic's whole and lighter message over a link, as `measure network` does, and say what the plan "
+        "gains.",
+        "--measure",
+        default=False,
+    ),
+    bag: Path | None = _make_option(
+        "With --measure: send the messages of this bag; without one they are filled as the publishers fill them."
+    ),
+    rate: float | None = _make_option(
+        "With --measure: messages per second; default: as in the bag, else 50.", min=0.001
+    ),
+    repeat: int | None = _make_option("With --measure: repetitions; intervals are over them [default: 3].", min=1),
+    nodes: str = _make_option(
+        "With --measure: roscpp, rospy or dds; default: roscpp for ROS 1, dds for ROS 2.", default=""
+    ),
+    link: str = _make_option("With --measure: rate of each link, such as 54mbit [default: 100mbit].", default=""),
+    loopback: bool = _make_option("With --measure: no link, which needs no root.", "--loopback", default=False),
+    results: Path | None = _make_option("With --measure: a folder for the results, which a later run continues."),
+    length: _SizeLength = 10,
     config: _Config = None,
     follow_links: _FollowLinks = False,
     format: str = _make_option("One of text, json, patch.", "--format", "-f", default="text"),

@@ -92,7 +92,7 @@ def verify(
             if folder.exists() and any(folder.iterdir()):
                 raise UserError(f"{folder}: is not empty; name a new folder")
         runs: list[_Run] = []
-        empty = Prepared(PrunePlan((), (), {}, {}), {})
+        empty = prepared._replace(plan=PrunePlan((), (), {}, {}), originals={})
         for name, version in (("before", empty), ("after", prepared)):
             say(f"building the workspace as it is {name} pruning")
             failure = build(root, folder / name, version, toplevel)

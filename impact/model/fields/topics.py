@@ -309,12 +309,14 @@ class TopicReader:
 
     def _make_publisher(self, publish: Publish, type_: str) -> PublisherFields:
         statement = self._statements.get((publish.path, publish.line))
-        writing = Writing({}, "its statement is not known")
+        writing = Writing({}, "its statement is not known", {})
         if statement is not None and not publish.through:
             use = statement.use
             arguments = use.call.arguments
             writing = find_writes(self.reader, arguments[0] if arguments else None, use.fn, use.call.line, type_)
-        return PublisherFields(publish.node, publish.path, publish.line, _list_places(writing.sets), writing.unknown)
+        lengths = tuple((show(path), length) for path, length in sorted(writing.lengths.items()))
+        sets = _list_places(writing.sets)
+        return PublisherFields(publish.node, publish.path, publish.line, sets, writing.unknown, lengths)
 
 
 def _list_places(found: dict[Path, ReadAt]) -> tuple[FieldAt, ...]:

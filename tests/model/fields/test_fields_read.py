@@ -556,3 +556,59 @@ int main(int argc, char** argv) {
 """
     found = report(tmp_path, {"src/watch.cpp": code})
     assert tell(find_subscriber(found)) == ({"level"}, {"header.stamp"})
+
+
+# What the publisher does with `msg` before it publishes it, and the lengths that this writes.
+LENGTHS = {
+    "a text": ('msg.name = "base";', 'msg.name = "base"', {"name": 4}),
+    "a text in a part": ('msg.header.frame_id = "map";', 'msg.header.frame_id = "map"', {"header.frame_id": 3}),
+    "the longest": ('msg.name = "a"; if (ok) msg.name = "abc";', 'msg.name = "abc"\nmsg.name = "a"', {"name": 3}),
+    "bytes of UTF-8": ('msg.name = "\u00e4";', 'msg.name = "\u00e4"', {"name": 2}),
+    "elements": ("msg.ranges.resize(720);", "msg.ranges = [0.0] * 720", {"ranges": 720}),
+    "elements and a value": ("msg.ranges.assign(8u, 0.0f);", "msg.ranges = 8 * [0.0]", {"ranges": 8}),
+    "a vector": ("msg.ranges = std::vector<float>(16);", "msg.ranges = [1.0, 2.0]", {"ranges": (16, 2)}),
+    "a number that is not written": ("msg.ranges.resize(count);", "msg.ranges = [0.0] * count", {}),
+    "added to": ('msg.name += "more";', 'msg.name += "more"', {}),
+    "another message": ('other.name = "base";', 'other.name = "base"', {}),
+}
+TALK_CPP = """#include <ros/ros.h>
+#include <robot/Status.h>
+int main(int argc, char** argv) {{
+  ros::init(argc, argv, "talk");
+  ros::NodeHandle nh;
+  ros::Publisher pub = nh.advertise<robot::Status>("status", 1);
+  bool ok = argc > 1;
+  int count = argc;
+  robot::Status msg, other;
+  {body}
+  pub.publish(msg);
+}}
+"""
+TALK_PYTHON = """#!/usr/bin/env python3
+import rospy
+from robot.msg import Status
+rospy.init_node("talk")
+pub = rospy.Publisher("status", Status, queue_size=1)
+count = len(rospy.myargv())
+msg = Status()
+other = Status()
+{body}
+pub.publish(msg)
+"""
+
+
+@pytest.mark.parametrize("language", [0, 1])
+@pytest.mark.parametrize("case", LENGTHS)
+def test_lengths_that_publishers_write(tmp_path, case, language):
+    *bodies, lengths = LENGTHS[case]
+    name, text = (("src/watch.cpp", TALK_CPP), ("scripts/talk.py", TALK_PYTHON))[language]
+    (topic,) = [one for one in report(tmp_path, {name: text.format(body=bodies[language])}).topics if one.publishers]
+    (publisher,) = topic.publishers
+    expected = {key: value if isinstance(value, int) else value[language] for key, value in lengths.items()}
+    assert dict(publisher.lengths) == expected
+
+
+def test_lengths_of_what_is_made_with_keywords(tmp_path):
+    body = 'pub.publish(Status(name="base", ranges=[1.0, 2.0, 3.0], level=2))'
+    (topic,) = [one for one in report(tmp_path, {"scripts/talk.py": TALK_PYTHON.format(body=body)}).topics]
+    assert [dict(one.lengths) for one in topic.publishers] == [{"name": 4, "ranges": 3}, {}]
