@@ -52,7 +52,7 @@ from .module import (
 from .places import PlaceReader
 from .ranges import Ranges
 from .reader import FLOAT_OPERATIONS, INTEGER_OPERATIONS, Program
-from .solving import Model, SolverTimeout, Solving
+from .solving import Model, SolverTimeout, Solving, is_certain
 from .state import Frame, Raised, State, Visit
 from .terms import (
     add_offsets,
@@ -391,7 +391,7 @@ class Executor:
             state.taken = (*state.taken, not opposite)
             return not opposite
         held = self.solving.evaluate(condition, state.model)
-        if held not in (0, 1):
+        if not isinstance(held, int):
             # The model leaves it open: a float that no integer holds, as an integer.
             model = self._ask(state, condition)
             if model is _UNDECIDED:
@@ -452,7 +452,7 @@ class Executor:
             return
         if known is False:
             raise Ended(None)
-        if self.solving.evaluate(condition, state.model) != 1:
+        if not is_certain(self.solving.evaluate(condition, state.model)):
             model = self._ask(state, condition)
             if model is None:
                 raise Ended(None)
@@ -783,6 +783,9 @@ class Executor:
         if not state.has_begun:
             self.early.append(len(self.exploration.paths))
         place = end.place or self.find_place(state)
+        if result is Reaction.CRASH and not place.path:
+            kind = end.crash.value if end.crash is not None else ""
+            result, reason = Reaction.UNKNOWN, f"{kind} outside of the workspace's code"
         if result in (Reaction.HANDLED, Reaction.LOG_ONLY, Reaction.IGNORED):
             place = NOWHERE
         self.exploration.paths.append(
@@ -822,15 +825,15 @@ class Executor:
     def _find_changed_members(self, state: State) -> tuple[list[Observable], tuple[z3.BoolRef, ...]]:
         """Members that may differ from before, and a condition under which one of them does (none, where one does in
         any case)."""
-        changed, conditions, is_certain = [], [], bool(state.effects)
+        changed, conditions, is_shown = [], [], bool(state.effects)
         for member in state.members:
             differs = self._compare_member(state, member)
             if isinstance(differs, int):
                 if differs:
-                    is_certain = True
+                    is_shown = True
                     changed.append(Observable("member", member.name, NOWHERE))
                 continue
-            if self.solving.evaluate(differs, state.model) == 1:
+            if is_certain(self.solving.evaluate(differs, state.model)):
                 found: Any = {}
             else:
                 found = self._ask(state, differs)
@@ -840,7 +843,7 @@ class Executor:
                 state.model.update(found)
             changed.append(Observable("member", member.name, NOWHERE))
             conditions.append(differs)
-        if is_certain or not conditions:
+        if is_shown or not conditions:
             return changed, ()
         return changed, (reduce_term(z3.Or(*conditions)) if len(conditions) > 1 else conditions[0],)
 

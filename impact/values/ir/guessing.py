@@ -80,6 +80,8 @@ class Guessing:
         for value in (0.0, 1.0):
             yield dict.fromkeys(floats, value)
         if len(floats) > 1:
+            # No rotation, if there are quaternions.
+            yield {each: 1.0 if each.endswith(".w") else 0.0 for each in floats}
             for name in floats[:8]:
                 yield {each: 1.0 if each == name else 0.0 for each in floats}
         for value in pool[:16]:

@@ -215,8 +215,11 @@ class Ranges:
                     found = _make_unsigned(spans[1], term.arg(1).size())
                 else:
                     found = Span(0, (1 << (bits - first.size())) - 1)
-        elif kind == z3.Z3_OP_EXTRACT and term.params()[1] == 0:
-            if everything.low <= spans[0].low and spans[0].high <= everything.high:
+        elif kind == z3.Z3_OP_EXTRACT:
+            first, last = term.params()
+            if spans[0].low >= 0 and spans[0].high < 1 << (first + 1):
+                found = Span(spans[0].low >> last, spans[0].high >> last)
+            elif last == 0 and everything.low <= spans[0].low and spans[0].high <= everything.high:
                 found = spans[0]
         elif kind == z3.Z3_OP_BAND:
             highs = [each.high for each in spans if each.low >= 0]

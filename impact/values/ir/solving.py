@@ -44,6 +44,11 @@ class Traits(NamedTuple):
     has_products: bool
 
 
+def is_certain(value: Any) -> bool:
+    """Whether a truth value is the number 1: a term that stays open is not."""
+    return isinstance(value, int) and value == 1
+
+
 _NOTHING = Traits(frozenset(), frozenset(), False, False)
 Model = Mapping[str, int]
 
@@ -160,7 +165,7 @@ class Solving:
                         model[name] = pack_float(math.nan, derived.bits)
 
     def holds(self, conditions: Iterable[z3.BoolRef], model: Model) -> bool:
-        return all(self.evaluate(each, model) == 1 for each in conditions)
+        return all(is_certain(self.evaluate(each, model)) for each in conditions)
 
     def find_model(self, conditions: Sequence[z3.BoolRef], model: Model) -> dict[str, int] | None:
         """Values of the variables of some conditions that fulfil them, or None where there are none.
