@@ -74,10 +74,12 @@ def list_offsets(run: Machine, state: State, pointer: Pointer, size: int, alignm
     memory_object = state.objects[pointer.object]
     step = max(1, min(16, max(alignment, 1 << min(4, count_trailing_zeros(pointer.offset)))))
     span = run.ranges.find_span(pointer.offset)
-    last = min(memory_object.size - size, span.high if span.low >= 0 else memory_object.size)
-    found = range(0, last + 1, step)
+    first, last = 0, memory_object.size - size
+    if span.low >= 0:
+        first, last = -(-span.low // step) * step, min(last, span.high)
+    found = range(first, last + 1, step)
     has_addresses = any(isinstance(value, Pointer | Code) for _, value in memory_object.cells.values())
-    if len(found) <= 4 or (not has_addresses and len(found) <= _MOST_OFFSETS):
+    if len(found) <= _MOST_OFFSETS and not has_addresses:
         return list(found)
     values = run.list_values(state, pointer.offset, 64, _FEW_OFFSETS)
     if values is None:
