@@ -83,10 +83,10 @@ class HarnessFiles(NamedTuple):
 
 class Workshop:
     """Compiles units of one workspace in a folder of its own. root: of the workspace; packages: folders of its
-    packages, relative to it; is_own: whether its code declares a name."""
+    packages, relative to it; is_own: whether its code declares a name in a scope."""
 
     def __init__(self, root: Path, folder: Path, definitions: Definitions, packages: Iterable[str], bounds: Bounds,
-                 is_own: Callable[[str], bool] = lambda _: False):
+                 is_own: Callable[[str, str], bool] = lambda scope, name: False):
         self.root, self.folder, self.definitions, self.bounds = root.resolve(), folder, definitions, bounds
         self.include = folder / "include"
         self.include.mkdir(parents=True, exist_ok=True)

@@ -91,9 +91,12 @@ class HarnessSession:
         self.workshop = Workshop(root, folder, self.definitions, packages, self.bounds, self._is_own)
         self._further: dict[str, tuple[SourceUnit, str] | str] = {}
 
-    def _is_own(self, name: str) -> bool:
+    def _is_own(self, scope: str, name: str) -> bool:
         code = self.reader.code
-        return name in code.classes or name in code.by_tail
+        if not scope:
+            return name in code.classes or name in code.by_tail
+        found = (*code.classes.get(name, ()), *code.by_tail.get(name, ()))
+        return any(_ends_like(each.name, f"{scope}::{name}", "::") for each in found)
 
     def __enter__(self) -> HarnessSession:
         return self

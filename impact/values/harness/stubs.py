@@ -36,9 +36,9 @@ def parse_errors(output: str) -> list[CompileError]:
 
 class StubTable:
     """What is declared so far. read_line: a line of a file, counted from 1, empty where there is none. is_own: whether
-    the code itself declares a name, so that it is not for us to declare."""
+    the code itself declares a name in a scope, so that it is not for us to declare."""
 
-    def __init__(self, read_line: Callable[[str, int], str], is_own: Callable[[str], bool] = lambda _: False):
+    def __init__(self, read_line: Callable[[str, int], str], is_own: Callable[[str, str], bool] = lambda scope, name: False):
         self._read_line, self._is_own = read_line, is_own
         # Scope and name to what it is: `namespace`, `type`, `template`, `function`, `variable`, `constant`.
         self._names: dict[tuple[str, str], str] = {}
@@ -164,7 +164,7 @@ class StubTable:
 
     def _add_name(self, scope: str, name: str, kind: str) -> bool:
         scope = _strip_arguments(scope).removeprefix("::")
-        if scope.partition("::")[0] in _OWN or not _NAME.fullmatch(name) or (self._is_own(name) and kind != "namespace"):
+        if scope.partition("::")[0] in _OWN or not _NAME.fullmatch(name) or (kind != "namespace" and self._is_own(scope, name)):
             return False
         if scope:
             self._add_namespace(scope)

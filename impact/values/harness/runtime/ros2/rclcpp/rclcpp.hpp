@@ -524,9 +524,6 @@ class Node : public std::enable_shared_from_this<Node> {
     else ri::give_plain("subscriber", []() { ri_unknown("a subscription whose type is adapted"); }, file, line);
     auto made = std::make_shared<Subscription<M>>(); made->ri_topic = topic; return made;
   }
-  template <class S, class F, class... O> std::shared_ptr<Service<S>> create_service(const std::string &, F &&callback, O &&...) {
-    return ri_serve<S>(std::forward<F>(callback), "", 0);
-  }
   template <class S, class F> std::shared_ptr<Service<S>> create_service(const std::string &, F &&callback, RI_HERE) {
     return ri_serve<S>(std::forward<F>(callback), ri_file, ri_line);
   }
