@@ -3,9 +3,8 @@
 import subprocess
 
 import pytest
-
 from harness_workspaces import Prepared, needs_clang, needs_fuzzer, write_workspace
-from rosimpact.impact.values.harness.fuzzing import fuzz
+from rosimpact.impact.values.harness.fuzzing import run_fuzzer
 from rosimpact.impact.values.harness.replay import is_confirmed
 from rosimpact.impact.values.harness.toolchain import find_clang
 from rosimpact.impact.values.outcomes import CodeLine, CrashKind, Reaction
@@ -41,7 +40,7 @@ def prepared(tmp_path_factory):
 
 @needs_fuzzer
 def test_fuzzer_finds_a_crash_that_a_replay_confirms(prepared):
-    found = fuzz(prepared.by_name["on_period"], 4)
+    found = run_fuzzer(prepared.by_name["on_period"], 4)
     line = CodeLine(PATH, prepared.find_line(PATH, "DIVISION"))
     assert [(one.witness.result, one.witness.crash, one.witness.place) for one in found] == [
         (Reaction.CRASH, CrashKind.DIVISION, line)

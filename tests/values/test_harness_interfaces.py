@@ -1,11 +1,10 @@
 """Headers of messages: what is generated, and that it compiles in both forms."""
 
 import pytest
-
 from harness_workspaces import needs_clang
 from rosimpact.impact.facts.interface import extract
 from rosimpact.impact.values.harness.facade import find_facade, list_folders
-from rosimpact.impact.values.harness.interfaces import Definitions, list_constants, write_headers
+from rosimpact.impact.values.harness.interfaces import KnownInterfaces, list_constants, write_headers
 from rosimpact.impact.values.harness.toolchain import find_clang, run_compiler
 
 
@@ -32,7 +31,7 @@ class _Workspace:
 
 
 def make(ros, interfaces=None):
-    return Definitions(_Workspace(ros, [_Package("own", interfaces)] if interfaces else []))
+    return KnownInterfaces(_Workspace(ros, [_Package("own", interfaces)] if interfaces else []))
 
 
 @pytest.mark.parametrize(
@@ -55,9 +54,9 @@ def test_header_is_of_an_interface(ros, header, key):
 
 
 OWN = {
-    "msg/Motor.msg": "int8 LOW=-128\nuint64 BIG=18446744073709551615\nstring NAME=it's \"it\"\nfloat32 HALF=0.5\n"
-    "bool on\nbyte raw\nchar letter\nwstring wide\nfloat64 gain 1.5\nstring label \"none\"\nint32[3] fixed [1, 2, 3]\n"
-    "uint8[] open\nint16[<=4] some\nOther[] others\nbuiltin_interfaces/Time stamp\nstring<=5 short_name\nbool[] flags\n",
+    "msg/Motor.msg": 'int8 LOW=-128\nuint64 BIG=18446744073709551615\nstring NAME=it\'s "it"\nfloat32 HALF=0.5\n'
+    'bool on\nbyte raw\nchar letter\nwstring wide\nfloat64 gain 1.5\nstring label "none"\nint32[3] fixed [1, 2, 3]\n'
+    "uint8[] open\nint16[<=4] some\nOther[] others\nbuiltin_interfaces/Time stamp\nstring<=5 brief\nbool[] flags\n",
     "msg/Other.msg": "geometry_msgs/Point at\nfloat64 class_size\n",
     "srv/Ask.srv": "string question\n---\nint32 answer\n",
     "action/Move.action": "int32 goal_x\n---\nbool done\n---\nfloat32 progress\n",
@@ -77,7 +76,8 @@ int main() {
   own::msg::Motor::_gain_type gain = made->gain;
   own::srv::Ask::Request request; own::action::Move::Goal goal; own::action::Move::Feedback feedback;
   ri::fill(*made, "msg"); ri::send(*made, "msg");
-  return fixed[0] + static_cast<int>(gain) + static_cast<int>(request.question.size()) + goal.goal_x + (feedback.progress > 0) +
+  int sizes = static_cast<int>(request.question.size()) + goal.goal_x + (feedback.progress > 0);
+  return fixed[0] + static_cast<int>(gain) + sizes +
          (*constant == *own_one);
 }
 """

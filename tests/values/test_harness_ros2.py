@@ -1,8 +1,7 @@
-"""Callbacks of rclcpp: lambdas, binds, members, services, timers, transforms, own messages, several sources, headers that
-are not on the machine."""
+"""Callbacks of rclcpp: lambdas, binds, members, services, timers, transforms, own messages, several sources, and headers
+that are not on the machine."""
 
 import pytest
-
 from harness_workspaces import Prepared, double, needs_compiler, text, write_workspace
 from rosimpact.impact.values.outcomes import CodeLine, CrashKind, Reaction
 
@@ -168,7 +167,9 @@ def test_transforms_are_found_or_not(prepared):
 
 @needs_compiler
 def test_lambda_parameters_and_members(prepared):
-    name = next(each for each in prepared.by_name if each.startswith("lambda@") and prepared.by_name[each].kind == "subscriber")
+    name = next(
+        each for each in prepared.by_name if each.startswith("lambda@") and prepared.by_name[each].kind == "subscriber"
+    )
     nan = {"msg.twist.twist.linear.x": double(float("nan"))}
     shown = prepared.replay(name, nan)
     assert (shown.crash, shown.place) == (CrashKind.FLOAT_TO_INTEGER, CodeLine(PATH, prepared.find_line(PATH, "FLOAT")))

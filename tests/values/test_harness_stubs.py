@@ -1,12 +1,11 @@
 """What headers that are not here declare, worked out of what a compiler says."""
 
 import pytest
-
 from rosimpact.impact.values.harness.stubs import StubTable, parse_errors
 
 LINES = {
     1: "  pcl::PointCloud<Point> cloud;",
-    2: "  vendor::open(\"can0\");",
+    2: '  vendor::open("can0");',
     3: "  driver.start();",
     4: "class VENDOR_EXPORT Node : public Base {",
     5: "using namespace vendor::inner;",
@@ -31,7 +30,10 @@ def test_errors_are_read():
 @pytest.mark.parametrize(
     "row, expected",
     [
-        ((1, 8, "no template named 'PointCloud' in namespace 'pcl'"), "namespace pcl { template <class... RiT> struct PointCloud"),
+        (
+            (1, 8, "no template named 'PointCloud' in namespace 'pcl'"),
+            "namespace pcl { template <class... RiT> struct PointCloud",
+        ),
         ((7, 11, "no type named 'Mode' in namespace 'vendor'"), "namespace vendor { struct Mode : ri::Anything"),
         ((2, 11, "no member named 'open' in namespace 'vendor'"), "ri::Anything open(RiA &&...)"),
         ((6, 18, "no member named 'RED' in namespace 'vendor'"), "inline constexpr int RED ="),
@@ -62,7 +64,8 @@ def test_macros_come_first():
 
 
 @pytest.mark.parametrize(
-    "row", [(1, 1, "no type named 'vektor' in namespace 'std'"), (1, 1, "unknown type name 'Own'"), (1, 1, "expected ';'")]
+    "row",
+    [(1, 1, "no type named 'vektor' in namespace 'std'"), (1, 1, "unknown type name 'Own'"), (1, 1, "expected ';'")],
 )
 def test_nothing_is_made_up(row):
     table, new = learn(row, is_own=lambda scope, name: name == "Own")

@@ -3,7 +3,6 @@
 import struct
 
 import pytest
-
 from rosimpact.impact.facts.interface import extract
 from rosimpact.impact.values.outcomes import CodeLine, CrashKind, Reaction, Witness
 from rosimpact.impact.values.witnesses import (
@@ -86,7 +85,8 @@ def test_message_and_yaml():
 
 
 @pytest.mark.parametrize(
-    "value, text", [(float("inf"), ".inf"), (float("-inf"), "-.inf"), (1e300, "1.0e+300"), (1.5e-7, "1.5e-07"), (-3, "-3")]
+    "value, text",
+    [(float("inf"), ".inf"), (float("-inf"), "-.inf"), (1e300, "1.0e+300"), (1.5e-7, "1.5e-07"), (-3, "-3")],
 )
 def test_numbers_in_yaml(value, text):
     assert format_yaml(value) == text
@@ -96,14 +96,16 @@ def test_commands():
     values = {"msg.span.sec": 2**32 - 1, "msg.header.stamp.nsec": 5}
     one = record(values, "own/Stamped")
     assert format_publish_command(Interfaces(1), one) == (
-        "rostopic pub -1 /car own/Stamped '{header: {seq: 0, stamp: {secs: 0, nsecs: 5}, frame_id: \"\"}, "
+        'rostopic pub -1 /car own/Stamped \'{header: {seq: 0, stamp: {secs: 0, nsecs: 5}, frame_id: ""}, '
         "span: {secs: -1, nsecs: 0}}'"
     )
     quoted = record({"request.question.size": 1, "request.question[0]": 39}, "own/Ask", "service")
     assert format_publish_command(Interfaces(2), quoted) == (
         "ros2 service call /car own/srv/Ask '{question: \"'\\''\"}'"
     )
-    assert format_publish_command(Interfaces(2), record()).startswith("ros2 topic pub --once /car own/msg/Car '{wheels: ")
+    assert format_publish_command(Interfaces(2), record()).startswith(
+        "ros2 topic pub --once /car own/msg/Car '{wheels: "
+    )
     assert format_publish_command(Interfaces(2), record({}, "", "timer")) == ""
 
 

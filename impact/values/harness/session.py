@@ -17,7 +17,7 @@ from ..outcomes import Bounds, Witness
 from .callbacks import ClassReader, CppCallback, list_cpp_callbacks
 from .compile import CannotCompile, HarnessFiles, SourceUnit, Workshop
 from .generate import Harness, HarnessEntry, HarnessWriter
-from .interfaces import Definitions, list_constants
+from .interfaces import KnownInterfaces, list_constants
 from .replay import SECONDS, Replayed, replay
 from .toolchain import NO_CLANG, find_clang
 
@@ -80,12 +80,14 @@ class HarnessSession:
     """Harnesses of one workspace. root: its folder on disk; folder: for what is compiled, a temporary one without it,
     which is removed by close()."""
 
-    def __init__(self, root: Path, workspace: Workspace, graph: Graph, bounds: Bounds | None = None, folder: Path | None = None):
+    def __init__(
+        self, root: Path, workspace: Workspace, graph: Graph, bounds: Bounds | None = None, folder: Path | None = None
+    ):
         self._stack = ExitStack()
         if folder is None:
             folder = Path(self._stack.enter_context(tempfile.TemporaryDirectory(prefix="rosimpact-values-")))
         self.bounds = bounds or Bounds()
-        self.definitions = Definitions(workspace)
+        self.definitions = KnownInterfaces(workspace)
         self.workspace, self.graph = workspace, graph
         packages = [package.path for package in workspace]
         self.workshop = Workshop(root, folder, self.definitions, packages, self.bounds, self._is_own)
@@ -174,14 +176,18 @@ class HarnessSession:
         folder = {"service": "srv", "action": "action"}.get(one.kind, "msg")
         package, _, name = one.message_type.partition("/")
         constants = list_constants(self.definitions, f"{package}/{folder}/{name}") if name else {}
-        place = (one.function.source.path, one.function.facts.line) if one.function is not None else (one.path, one.line)
+        place = (
+            (one.function.source.path, one.function.facts.line) if one.function is not None else (one.path, one.line)
+        )
         return PreparedCallback(
             one.kind, one.nodes[0] if one.nodes else "", one.topics[0] if one.topics else "", one.name,
             one.message_type, one.path, one.line, one.nodes, one.topics, reason, constants=constants,
             function_place=place, workshop=self.workshop,
         )  # fmt: skip
 
-    def _add_further(self, unit: SourceUnit, text: str, source: str) -> tuple[list[SourceUnit], list[str], dict[str, str]]:
+    def _add_further(
+        self, unit: SourceUnit, text: str, source: str
+    ) -> tuple[list[SourceUnit], list[str], dict[str, str]]:
         """The sources that a harness calls into, compiled."""
         units, texts, left_out = [unit], [text], {}
         seen, left = {source}, [text]
@@ -211,7 +217,13 @@ class HarnessSession:
         return self._further[path]
 
 
-def _is_asked(one: CppCallback, nodes: Collection[str], topics: Collection[str], callbacks: Collection[str], kinds: Collection[str]) -> bool:
+def _is_asked(
+    one: CppCallback,
+    nodes: Collection[str],
+    topics: Collection[str],
+    callbacks: Collection[str],
+    kinds: Collection[str],
+) -> bool:
     if one.kind not in kinds:
         return False
     if nodes and not any(_ends_like(each, name, "/") for each in one.nodes for name in nodes):
