@@ -27,7 +27,7 @@ from pathlib import Path
 import mining
 from field_sight import list_callbacks
 from rosimpact.edges.console import UserError
-from rosimpact.impact.analysis.values import survey_values
+from rosimpact.impact.analysis.values import explore_values
 from rosimpact.impact.values.answers import CallbackAnswer
 from rosimpact.impact.values.outcomes import Bounds, Reaction
 
@@ -74,7 +74,9 @@ def ask(options: argparse.Namespace, system: dict, records: list[dict]) -> list[
     names = sorted({record["callback"] for record in records})
     bounds = Bounds(seconds=options.seconds)
     try:
-        answer = survey_values(folder, callbacks=names, bounds=bounds, replays=options.replay, publishers=False, jobs=2)
+        answer = explore_values(
+            folder, callbacks=names, bounds=bounds, replays=options.replay, publishers=False, jobs=2
+        )
     except UserError as error:
         print(f"{system['repo']}: {error}", file=sys.stderr)
         return [{"explored": False, "reason": str(error)} for _ in records]

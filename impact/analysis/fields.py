@@ -63,7 +63,8 @@ class OpenedFields(NamedTuple):
 
     def select_closed(self, found: FieldReport) -> frozenset[str]:
         """The topics of a report to which nobody else subscribes."""
-        return select_topics(self.closed, [*(one.topic for one in found.topics), *(topic for topic, _ in found.unknown)])
+        names = [*(one.topic for one in found.topics), *(topic for topic, _ in found.unknown)]
+        return select_topics(self.closed, names)
 
 
 @contextlib.contextmanager
@@ -72,7 +73,8 @@ def open_fields(
     progress: Callable[[int, int], None] | None = None, follow_links: bool = False,
 ) -> Iterator[OpenedFields]:  # fmt: skip
     """The workspace at a path. closed: topics, or patterns of them, that nobody else subscribes to, as the user knows,
-    besides those of rosimpact.toml. The others as for check. Raises CheckError, ConfigError and TreeError with a text for the user."""
+    besides those of rosimpact.toml. The others as for check. Raises CheckError, ConfigError and TreeError with a text
+    for the user."""
     tree = open_tree(path, rev, follow_links=follow_links)
     settings = load_settings(path, tree, config, follow_links=follow_links)
     with Store() as store:

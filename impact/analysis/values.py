@@ -30,7 +30,7 @@ class ValuesAnswer(NamedTuple):
     mismatches: tuple[Mismatch, ...]
 
 
-def survey_values(
+def explore_values(
     path: Path, *, nodes: Sequence[str] = (), topics: Sequence[str] = (), callbacks: Sequence[str] = (),
     kinds: Sequence[str] = ("subscriber",), bounds: Bounds | None = None, replays: bool = False,
     fuzz_seconds: float = 0.0, emit: str = "", out: Path | None = None,

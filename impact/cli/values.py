@@ -14,7 +14,7 @@ def values(
     emit, out, workspace, publishers, follow_links, format, output, all, jobs, quiet,
 ) -> str | tuple[str, int]:  # fmt: skip
     """For which values callbacks act, do nothing, only log or crash, and which of them publishers send."""
-    from ..analysis.values import survey_values
+    from ..analysis.values import explore_values
     from ..report.values import render_values_json, render_values_text
     from ..values.outcomes import Bounds
 
@@ -29,7 +29,7 @@ def values(
         raise UserError("--emit and --out: are given together: what to write, and the folder for it")
     if not path.is_dir():
         raise UserError(f"{path}: is no folder; give a workspace")
-    answer = survey_values(
+    answer = explore_values(
         path, nodes=node, topics=topic, callbacks=callback, kinds=kind or ["subscriber"],
         bounds=Bounds(text=text, array=array, loops=loops, seconds=seconds), replays=replay, fuzz_seconds=fuzz,
         emit=emit, out=out, publishers=publishers,

@@ -8,7 +8,7 @@ from typing import Any
 
 from ...edges.console import format_count, format_json
 from ..analysis.values import ValuesAnswer
-from ..values.answers import CallbackAnswer, Example, FieldSets, read_example
+from ..values.answers import CallbackAnswer, CallbackExample, FieldSets, read_example
 from ..values.harness.replay import Replayed
 from ..values.matching import SEVERITIES, Mismatch
 from ..values.outcomes import Bounds, CodeLine, CrashKind, InputKind, Reaction
@@ -108,7 +108,7 @@ def _render_field(field: FieldSets, width: int, style: Style) -> Iterator[str]:
     yield from lay_out(pieces, style, 2, 4 + width)
 
 
-def _render_example(one: Example, style: Style) -> Iterator[str]:
+def _render_example(one: CallbackExample, style: Style) -> Iterator[str]:
     values = ", ".join(f"{path.removeprefix('msg.')}={_spell(value)}" for path, value in _list_telling(one))
     what = one.crash.value if one.crash is not None else one.result.value
     pieces = [LinePart(what, _ROLES[one.result])]
@@ -123,7 +123,7 @@ def _render_example(one: Example, style: Style) -> Iterator[str]:
     yield from lay_out(pieces, style, 2, 6)
 
 
-def _list_telling(one: Example) -> list[tuple[str, Any]]:
+def _list_telling(one: CallbackExample) -> list[tuple[str, Any]]:
     """Values of an example that a person needs to see: those that are not what an empty message has, at most ten."""
     rows = [(path, value) for path, value in read_example(one).items() if value not in (0, "", False) or value != value]
     return rows[:10]
@@ -235,8 +235,8 @@ def _describe_callback(one: CallbackAnswer) -> dict[str, Any]:
 def _describe_set(values: FieldValues, names: Mapping[int, str]) -> dict[str, Any]:
     return {
         "text": format_values(values, names),
-        "spans": [[_tame(low), _tame(high)] for low, high in values.spans],
-        "infinities": [_tame(one) for one in values.infinities],
+        "spans": [[_convert_number(low), _convert_number(high)] for low, high in values.spans],
+        "infinities": [_convert_number(one) for one in values.infinities],
         "nan": values.has_nan,
         "texts": None if values.texts is None else [one.decode("latin-1") for one in values.texts],
         "relational": values.is_relational,
@@ -244,12 +244,12 @@ def _describe_set(values: FieldValues, names: Mapping[int, str]) -> dict[str, An
     }
 
 
-def _describe_example(one: Example) -> dict[str, Any]:
+def _describe_example(one: CallbackExample) -> dict[str, Any]:
     return {
         "result": one.result.value, "crash": one.crash.value if one.crash is not None else None,
         "path": one.place.path, "line": one.place.line, "detail": one.detail, "effects": one.effects,
         "assumed": one.assumed, "confirmed": one.confirmed, "note": one.note,
-        "values": {path: _tame(value) for path, value in read_example(one).items()},
+        "values": {path: _convert_number(value) for path, value in read_example(one).items()},
     }  # fmt: skip
 
 
@@ -266,7 +266,7 @@ def _describe_mismatch(one: Mismatch) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _tame(value: Any) -> Any:
+def _convert_number(value: Any) -> Any:
     """A number that JSON has."""
     if isinstance(value, float) and not math.isfinite(value):
         return "NaN" if math.isnan(value) else "Infinity" if value > 0 else "-Infinity"

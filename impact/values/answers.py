@@ -13,7 +13,7 @@ NO_PLACE = CodeLine("", 0)
 
 
 @dataclass(frozen=True)
-class Example:
+class CallbackExample:
     """A message that leads to a reaction. values: input path to bits; kinds: what these are, by path. confirmed: a
     replay did the same; None where none was made. note: what the replay did instead, or why there was none."""
 
@@ -46,7 +46,7 @@ class FieldSets:
 
 
 @dataclass(frozen=True)
-class SentField:
+class SentValues:
     """What a publisher can put into a field. values: a "may" set. is_known: whether every way that publishes was
     followed, and the field known on it; where not, it may send more."""
 
@@ -59,12 +59,12 @@ class SentField:
 
 
 @dataclass(frozen=True)
-class SentMessage:
+class SentThrough:
     """What a callback publishes through one publisher. publisher: its name in the code; places: of the statements."""
 
     publisher: str
     places: tuple[CodeLine, ...]
-    fields: tuple[SentField, ...]
+    fields: tuple[SentValues, ...]
 
 
 @dataclass(frozen=True)
@@ -85,8 +85,8 @@ class CallbackAnswer:
     reason: str = ""
     counts: Mapping[Reaction, int] = field(default_factory=dict)
     fields: tuple[FieldSets, ...] = ()
-    examples: tuple[Example, ...] = ()
-    sent: tuple[SentMessage, ...] = ()
+    examples: tuple[CallbackExample, ...] = ()
+    sent: tuple[SentThrough, ...] = ()
     unknown: Mapping[str, int] = field(default_factory=dict)
     assumed: tuple[str, ...] = ()
     stood_for: tuple[str, ...] = ()
@@ -121,7 +121,7 @@ def read_number(kind: InputKind, bits: int, is_signed: bool, value: int) -> int 
     return read_signed(value, bits) if is_signed else value
 
 
-def read_example(example: Example) -> dict[str, int | float | bool | str]:
+def read_example(example: CallbackExample) -> dict[str, int | float | bool | str]:
     """The values of an example as a person writes them: texts as one, the elements of arrays one by one."""
     found: dict[str, int | float | bool | str] = {}
     for path, bits in example.values.items():
@@ -139,11 +139,11 @@ def read_example(example: Example) -> dict[str, int | float | bool | str]:
     return found
 
 
-def _is_text(example: Example, stem: str) -> bool:
+def _is_text(example: CallbackExample, stem: str) -> bool:
     return example.kinds.get(f"{stem}[0]", (None,))[0] is InputKind.CHARACTER
 
 
-def _is_past_end(example: Example, path: str) -> bool:
+def _is_past_end(example: CallbackExample, path: str) -> bool:
     """Whether a path is of an element that its array has not got in this example."""
     start = path.find("[")
     while start >= 0:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import z3
 
-from .answers import Example, FieldSets, SentField, SentMessage
+from .answers import CallbackExample, FieldSets, SentThrough, SentValues
 from .outcomes import CallbackPath, CodeLine, Exploration, InputKind, Reaction, Sent, SymbolicInput
 from .projection import FieldValues, make_witness, project_fields
 
@@ -23,8 +23,8 @@ class Evaluated(NamedTuple):
 
     counts: dict[Reaction, int]
     fields: tuple[FieldSets, ...]
-    examples: tuple[Example, ...]
-    sent: tuple[SentMessage, ...]
+    examples: tuple[CallbackExample, ...]
+    sent: tuple[SentThrough, ...]
     unknown: dict[str, int]
     assumed: tuple[str, ...]
     left: int
@@ -65,10 +65,10 @@ def _list_fields(exploration: Exploration, names: Mapping[str, Mapping[int, str]
     return found
 
 
-def _list_examples(exploration: Exploration) -> list[Example]:
+def _list_examples(exploration: Exploration) -> list[CallbackExample]:
     """One example for each kind of outcome: reaction, crash and line, or what was observed."""
     kinds = {name: (one.kind, one.bits, one.is_signed) for name, one in exploration.inputs.items()}
-    found: dict[tuple[object, ...], Example] = {}
+    found: dict[tuple[object, ...], CallbackExample] = {}
     # A way on which nothing is assumed is the better example.
     for path in sorted(exploration.paths, key=lambda one: len(one.assumed)):
         key = path.result, path.crash, path.place if path.crash else "", tuple(sorted({
@@ -80,35 +80,35 @@ def _list_examples(exploration: Exploration) -> list[Example]:
         if witness is None:
             continue
         effects = tuple(dict.fromkeys(f"{one.kind} {one.name}".strip() for one in path.effects))
-        found[key] = Example(
+        found[key] = CallbackExample(
             path.result, witness.values, kinds, path.crash, path.place if path.crash else CodeLine("", 0), path.detail,
             path.assumed, effects,
         )  # fmt: skip
     return sorted(found.values(), key=lambda one: (one.result is not Reaction.CRASH, one.place))
 
 
-def _list_sent(exploration: Exploration, seconds: float) -> list[SentMessage]:
+def _list_sent(exploration: Exploration, seconds: float) -> list[SentThrough]:
     """Per publisher, the values of each field over all ways that publish through it."""
     ways: dict[str, list[tuple[CallbackPath, Sent]]] = {}
     for path in exploration.paths:
         for one in path.sent:
             ways.setdefault(one.publisher, []).append((path, one))
     is_whole = not exploration.left and not any(path.result is Reaction.UNKNOWN for path in exploration.paths)
-    found: list[SentMessage] = []
+    found: list[SentThrough] = []
     for publisher, rows in ways.items():
         kinds: dict[str, tuple[InputKind, int, bool]] = {}
         for _, one in rows:
             kinds.update(one.kinds)
-        fields: list[SentField] = []
+        fields: list[SentValues] = []
         for path in _list_leaves(kinds)[:_MOST_SENT_FIELDS]:
             kind = kinds.get(path) or (InputKind.CHARACTER, 8, False)
             values = _project_sent(exploration, rows, path, kind, seconds / 10)
             if values is not None:
                 name = path if path in kinds else f"{path}.size"
                 everywhere = all(name in one.values for _, one in rows)
-                fields.append(SentField(path, *kind, values, is_whole and everywhere))
+                fields.append(SentValues(path, *kind, values, is_whole and everywhere))
         places = tuple(dict.fromkeys(one.place for _, one in rows))
-        found.append(SentMessage(publisher, places, tuple(fields)))
+        found.append(SentThrough(publisher, places, tuple(fields)))
     return found
 
 

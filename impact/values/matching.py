@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ..model.flow.graph import Graph
-from .answers import CallbackAnswer, Example, FieldSets, SentField, read_number
+from .answers import CallbackAnswer, CallbackExample, FieldSets, SentValues, read_number
 from .outcomes import CodeLine, InputKind, Reaction
 from .projection import FieldValues, Number, format_values
 
@@ -22,7 +22,7 @@ class Sender(NamedTuple):
 
     callback: str
     places: tuple[CodeLine, ...]
-    fields: Mapping[str, SentField]
+    fields: Mapping[str, SentValues]
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Mismatch:
     values: str
     sender: Sender | None
     subscriber: CallbackAnswer
-    example: Example | None = None
+    example: CallbackExample | None = None
     sure: bool = True
 
 
@@ -90,7 +90,7 @@ def _compare(answer: CallbackAnswer, topic: str, row: Sender) -> Iterator[Mismat
     fields = [one for one in answer.fields if not one.path.startswith("this.") and one.path in row.fields]
     for example in answer.examples:
         if example.result is Reaction.CRASH and example.confirmed is not False and _may_be_sent(example, row):
-            crashing = [(one, _meet(row, one, one.sets.get(Reaction.CRASH))) for one in fields]
+            crashing = [(one, _find_met(row, one, one.sets.get(Reaction.CRASH))) for one in fields]
             telling = [(one, met) for one, met in crashing if met is not None and not met.is_empty()]
             # The field that says most is the one of which the least crashes.
             telling.sort(key=lambda pair: (pair[1].is_relational, _measure(pair[0].sets[Reaction.CRASH])))
@@ -99,17 +99,17 @@ def _compare(answer: CallbackAnswer, topic: str, row: Sender) -> Iterator[Mismat
                 sure = not met.is_relational and (example.confirmed is True or not example.assumed)
                 yield _make(CRASHING, answer, topic, one, met, row, example, sure)
     for one in fields:
-        met = _meet(row, one, one.unhandled)
+        met = _find_met(row, one, one.unhandled)
         if met is not None and not met.is_empty() and not met.is_relational:
             is_frame = one.path.rpartition(".")[2] in _FRAMES
-            ignored = _meet(row, one, one.ignored)
+            ignored = _find_met(row, one, one.ignored)
             sure = ignored is not None and not ignored.is_empty()
             yield _make(FRAME if is_frame else UNHANDLED, answer, topic, one, met, row, None, sure)
 
 
-def _meet(row: Sender, one: FieldSets, values: FieldValues | None) -> FieldValues | None:
+def _find_met(row: Sender, one: FieldSets, values: FieldValues | None) -> FieldValues | None:
     """Values of a field that are sent and in a set."""
-    return intersect(row.fields[one.path].values, values) if values is not None else None
+    return find_common(row.fields[one.path].values, values) if values is not None else None
 
 
 def _measure(values: FieldValues) -> float:
@@ -119,7 +119,7 @@ def _measure(values: FieldValues) -> float:
     return sum(high - low + 1 for low, high in values.spans)
 
 
-def _may_be_sent(example: Example, row: Sender) -> bool:
+def _may_be_sent(example: CallbackExample, row: Sender) -> bool:
     """Whether a publisher can send each value that an example has in the fields that are known of it."""
     for path, bits in example.values.items():
         plain = path.removeprefix("msg.")
@@ -134,7 +134,7 @@ def _may_be_sent(example: Example, row: Sender) -> bool:
 
 def _make(
     kind: str, answer: CallbackAnswer, topic: str, sets: FieldSets, met: FieldValues, row: Sender | None,
-    example: Example | None, sure: bool,
+    example: CallbackExample | None, sure: bool,
 ) -> Mismatch:  # fmt: skip
     values = format_values(met, sets.names)
     return Mismatch(kind, topic, answer.message_type, sets.path, values, row, answer, example, sure)
@@ -161,7 +161,7 @@ def _list_impossible(answer: CallbackAnswer, topic: str, rows: Sequence[Sender])
                 yield _make(IMPOSSIBLE, answer, topic, sets, FieldValues(texts=lost), None, None, True)
 
 
-def intersect(one: FieldValues, other: FieldValues) -> FieldValues:
+def find_common(one: FieldValues, other: FieldValues) -> FieldValues:
     """Values that are in both sets."""
     spans: list[tuple[Number, Number]] = []
     for low, high in one.spans:

@@ -14,6 +14,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from ...edges.files import read_text
+
 # Sets limits and leaves the network, then becomes the program; its own file says whether the network is gone.
 _LAUNCHER = """
 import ctypes, os, resource, sys
@@ -80,7 +82,7 @@ def run_apart(
             raise
         finally:
             _stop(process)
-        told = status.read_text(encoding="utf-8") if status.exists() else ""
+        told = read_text(status, 100) if status.exists() else ""
         return Finished(process.returncode, output[:_MOST_OUTPUT], errors[:_MOST_OUTPUT], is_late, told == "offline")
 
 

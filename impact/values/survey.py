@@ -16,11 +16,11 @@ from ..facts.python import source
 from ..model.flow.graph import Graph
 from ..model.flow.workspace import list_code
 from ..model.workspace import Workspace
-from .answers import CallbackAnswer, Example, ValuesReport
+from .answers import CallbackAnswer, CallbackExample, ValuesReport
 from .evaluate import Evaluated, evaluate
 from .harness.callbacks import CppCallback, list_callbacks
 from .harness.compile import CannotCompile
-from .harness.fuzzing import fuzz
+from .harness.fuzzing import run_fuzzer
 from .harness.interfaces import Definitions, list_constants
 from .harness.replay import Replayed, is_confirmed
 from .harness.session import HarnessSession, PreparedCallback, is_asked
@@ -91,7 +91,7 @@ class Survey:
                     answer, is_offline = self._replay(target, answer)
                     offline.append(is_offline)
                 if fuzz_seconds and target.prepared is not None:
-                    answer = _fuzz(target.prepared, answer, fuzz_seconds)
+                    answer = _run_fuzzer(target.prepared, answer, fuzz_seconds)
                 found[number] = answer
                 if progress is not None:
                     progress(done, len(ready))
@@ -128,7 +128,7 @@ class Survey:
         known = explore_callback(target.code, messages, self._modules.get, replace(self.bounds, paths=50, seconds=5.0))
         kinds = {name: (one.kind, one.bits, one.is_signed) for name, one in known.inputs.items()}
         target.types = tuple(messages.asked)
-        return self._replay_python(target, witness, Example(witness.result, witness.values, kinds))
+        return self._replay_python(target, witness, CallbackExample(witness.result, witness.values, kinds))
 
     def emit_klee(self, asked: Asked, folder: Path) -> list[Path]:
         """Writes the harnesses of the C++ callbacks that are asked for, for KLEE; gives their folders."""
@@ -239,7 +239,7 @@ class Survey:
         ]
         return replace(answer, examples=tuple(examples)), all(one.is_isolated for one in seen)
 
-    def _replay_python(self, target: _Target, witness: Witness, example: Example) -> Replayed:
+    def _replay_python(self, target: _Target, witness: Witness, example: CallbackExample) -> Replayed:
         assert target.code is not None
         path = self.root / target.answer.path
         folders = list_folders([self.root / code.path for code in self._modules.values()])
@@ -258,16 +258,16 @@ def _get_file(callback: CppCallback) -> str:
     return callback.function.source.path if callback.function is not None else callback.path
 
 
-def _fuzz(prepared: PreparedCallback, answer: CallbackAnswer, seconds: float) -> CallbackAnswer:
+def _run_fuzzer(prepared: PreparedCallback, answer: CallbackAnswer, seconds: float) -> CallbackAnswer:
     """An answer with the crashes that a fuzzer found besides."""
     try:
-        crashes = fuzz(prepared, seconds)
+        crashes = run_fuzzer(prepared, seconds)
     except CannotCompile as error:
         return replace(answer, assumed=(*answer.assumed, f"not fuzzed: {error}"))
     known = {(one.crash, one.place.line) for one in answer.examples}
     kinds = dict(next((one.kinds for one in answer.examples), {}))
     more = [
-        Example(
+        CallbackExample(
             Reaction.CRASH, one.witness.values, {path: kinds.get(path, _ANY_NUMBER) for path in one.witness.values},
             one.witness.crash, one.witness.place, "found by fuzzing", confirmed=True,
         )
@@ -322,20 +322,20 @@ def _explore_target(
 def _read_result(answer: CallbackAnswer, result: Evaluated | Died, root: Path) -> CallbackAnswer:
     if isinstance(result, Died):
         return replace(answer, reason=f"the exploration ended early: {result.why}")
-    examples = tuple(replace(one, place=_relate(one.place, root)) for one in result.examples)
-    sent = tuple(replace(one, places=tuple(_relate(place, root) for place in one.places)) for one in result.sent)
+    examples = tuple(replace(one, place=_shorten_place(one.place, root)) for one in result.examples)
+    sent = tuple(replace(one, places=tuple(_shorten_place(place, root) for place in one.places)) for one in result.sent)
     return replace(
         answer, counts=result.counts, fields=result.fields, examples=examples, sent=sent,
         unknown=result.unknown, assumed=result.assumed, left=result.left, seconds=result.seconds,
     )  # fmt: skip
 
 
-def _relate(place: CodeLine, root: Path) -> CodeLine:
+def _shorten_place(place: CodeLine, root: Path) -> CodeLine:
     """A line of the debug information as the workspace has it."""
     return CodeLine(place.path.removeprefix(f"{root}/"), place.line)
 
 
-def _judge(example: Example, witness: Witness, seen: Replayed) -> Example:
+def _judge(example: CallbackExample, witness: Witness, seen: Replayed) -> CallbackExample:
     if seen.result.value == "unknown":
         return replace(example, note=f"not replayed: {seen.reason or seen.detail}")
     if is_confirmed(witness, seen):

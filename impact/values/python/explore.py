@@ -12,11 +12,11 @@ import z3
 
 from ..outcomes import Bounds, CallbackPath, CrashKind, Exploration, Reaction
 from .library import make_like
-from .machine import Machine
+from .machine import PythonMachine
 from .messages import Messages
-from .modules import Class, FindModule, Function, Handle, Instance, ModuleCode, Scope, Unsettled
-from .run import Run, ThrownError
-from .terms import Items, NotModelledError, Opaque, Record, Text, is_number
+from .modules import FindModule, Handle, ModuleCode, PythonClass, PythonFunction, PythonObject, Scope, Unsettled
+from .run import PythonRun, PythonThrownError
+from .terms import ListValue, NotModelledError, Opaque, Record, SymbolicText, is_number
 
 _KINDS = {
     "ZeroDivisionError": CrashKind.DIVISION, "IndexError": CrashKind.INDEX, "AssertionError": CrashKind.ASSERTION,
@@ -54,7 +54,7 @@ def explore_callback(
     while pending:
         if time.monotonic() > deadline or len(found.paths) >= bounds.paths:
             break
-        run = Run(pending.pop(), bounds, found.inputs, deadline)
+        run = PythonRun(pending.pop(), bounds, found.inputs, deadline)
         path = _take_way(callback, run, messages, find_module)
         found.instructions += run.steps
         pending.extend(run.open_ways)
@@ -65,7 +65,9 @@ def explore_callback(
     return found
 
 
-def _take_way(callback: CallbackCode, run: Run, messages: Messages, find_module: FindModule) -> CallbackPath | None:
+def _take_way(
+    callback: CallbackCode, run: PythonRun, messages: Messages, find_module: FindModule
+) -> CallbackPath | None:
     """One way through a callback; None where no input takes it."""
     modules: dict[str, ModuleCode] = {}
 
@@ -78,7 +80,7 @@ def _take_way(callback: CallbackCode, run: Run, messages: Messages, find_module:
             modules[name] = ModuleCode(code.name, code.path, code.tree)
         return modules[name]
 
-    machine = Machine(run, messages, find_fresh)
+    machine = PythonMachine(run, messages, find_fresh)
     module = ModuleCode(callback.module.name, callback.module.path, callback.module.tree)
     modules[module.name] = module
     watch = _Watch(machine)
@@ -86,7 +88,7 @@ def _take_way(callback: CallbackCode, run: Run, messages: Messages, find_module:
         machine.is_quiet = True
         machine.load(module)
         owner, function = _find_callback(machine, module, callback)
-        node: Instance | None = None
+        node: PythonObject | None = None
         if owner is not None:
             node = _make_node(machine, owner, function.name)
         _forget_preparation(run)
@@ -97,7 +99,7 @@ def _take_way(callback: CallbackCode, run: Run, messages: Messages, find_module:
         machine.is_quiet = False
         machine.call_function(function, [*given, *_make_others(function, len(given))], {})
         watch.finish()
-    except ThrownError as error:
+    except PythonThrownError as error:
         return _make_crash(run, error)
     except NotModelledError as error:
         return _make_path(run, Reaction.UNKNOWN, reason=str(error))
@@ -122,7 +124,7 @@ def _take_way(callback: CallbackCode, run: Run, messages: Messages, find_module:
     return _make_path(run, Reaction.LOG_ONLY if run.logs else Reaction.IGNORED)
 
 
-def _forget_preparation(run: Run) -> None:
+def _forget_preparation(run: PythonRun) -> None:
     """What happened while the node was made says nothing about the callback."""
     run.effects.clear()
     run.logs.clear()
@@ -132,14 +134,14 @@ def _forget_preparation(run: Run) -> None:
     run.steps = 0
 
 
-def _make_path(run: Run, result: Reaction, **more: Any) -> CallbackPath:
+def _make_path(run: PythonRun, result: Reaction, **more: Any) -> CallbackPath:
     return CallbackPath(
         result, tuple(run.condition), tuple(run.effects), tuple(run.logs), tuple(run.sent), place=run.place,
         assumed=tuple(run.assumed), **more,
     )  # fmt: skip
 
 
-def _make_crash(run: Run, error: ThrownError) -> CallbackPath | None:
+def _make_crash(run: PythonRun, error: PythonThrownError) -> CallbackPath | None:
     possible = run.is_possible()
     if possible is False:
         return None
@@ -166,17 +168,19 @@ def find_crash_kind(name: str, detail: str) -> CrashKind:
     return _KINDS.get(name, CrashKind.EXCEPTION)
 
 
-def _find_callback(machine: Machine, module: ModuleCode, callback: CallbackCode) -> tuple[Class | None, Function]:
+def _find_callback(
+    machine: PythonMachine, module: ModuleCode, callback: CallbackCode
+) -> tuple[PythonClass | None, PythonFunction]:
     parts = callback.name.split(".")
     value: Any = module.names.get(parts[0])
-    owner: Class | None = None
+    owner: PythonClass | None = None
     for part in parts[1:]:
-        if isinstance(value, Class):
+        if isinstance(value, PythonClass):
             owner = value
             value = value.find(part)
         else:
             value = None
-    if not isinstance(value, Function):
+    if not isinstance(value, PythonFunction):
         for node in ast.walk(module.tree):
             if isinstance(node, ast.Lambda) and node.lineno == callback.line:
                 raise NotModelledError("a callback that is a lambda")
@@ -184,7 +188,7 @@ def _find_callback(machine: Machine, module: ModuleCode, callback: CallbackCode)
     return owner, value
 
 
-def _make_others(function: Function, given: int) -> list[Any]:
+def _make_others(function: PythonFunction, given: int) -> list[Any]:
     """Further arguments of a callback (`callback_args`): nothing is known of them."""
     arguments = function.node.args
     wanted = [*arguments.posonlyargs, *arguments.args]
@@ -192,12 +196,12 @@ def _make_others(function: Function, given: int) -> list[Any]:
     return [Opaque(one.arg) for one in needed]
 
 
-def _make_node(machine: Machine, cls: Class, callback: str) -> Instance:
+def _make_node(machine: PythonMachine, cls: PythonClass, callback: str) -> PythonObject:
     """The object whose method the callback is: its constructor executed as far as that can be, and members that other
     methods set made symbolic."""
-    node = Instance(cls)
+    node = PythonObject(cls)
     maker = cls.find("__init__")
-    if isinstance(maker, Function) and isinstance(maker.node, ast.FunctionDef):
+    if isinstance(maker, PythonFunction) and isinstance(maker.node, ast.FunctionDef):
         arguments = maker.node.args
         names = [one.arg for one in (*arguments.posonlyargs, *arguments.args)]
         defaults = arguments.defaults
@@ -205,11 +209,11 @@ def _make_node(machine: Machine, cls: Class, callback: str) -> Instance:
         for name, default in zip(names[len(names) - len(defaults) :], defaults, strict=True):
             try:
                 values[name] = machine.evaluate(default, maker.scope)
-            except (NotModelledError, ThrownError):
+            except (NotModelledError, PythonThrownError):
                 values[name] = Opaque(name)
         if names:
             values[names[0]] = node
-        for extra, empty in ((arguments.vararg, Items([], is_frozen=True)), (arguments.kwarg, {})):
+        for extra, empty in ((arguments.vararg, ListValue([], is_frozen=True)), (arguments.kwarg, {})):
             if extra is not None:
                 values[extra.arg] = empty
         scope = Scope(maker.scope.module, values, maker.scope)
@@ -226,18 +230,18 @@ def _make_node(machine: Machine, cls: Class, callback: str) -> Instance:
     return node
 
 
-def _make_state(machine: Machine, path: str, value: Any) -> Any:
+def _make_state(machine: PythonMachine, path: str, value: Any) -> Any:
     """What a member may hold when a message comes: anything of its kind. What began as None may still be that."""
     if value is None:
         return Unsettled(path)
-    if is_number(value) or isinstance(value, (str, Text)):
+    if is_number(value) or isinstance(value, (str, SymbolicText)):
         return make_like(machine, path, value)
     if isinstance(value, Handle):
         return value
     return Opaque(path)
 
 
-def describe_class(cls: Class) -> _Class:
+def describe_class(cls: PythonClass) -> _Class:
     """Which methods of a class write and read which members."""
     found = _Class()
     for one in cls.list_order():
@@ -283,7 +287,7 @@ def _list_members(method: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[tu
                 yield inner.attr, True
 
 
-def _list_called_by(cls: Class, name: str) -> set[str]:
+def _list_called_by(cls: PythonClass, name: str) -> set[str]:
     """Methods that only a method of the same class calls, as far as the class shows."""
     calls: dict[str, set[str]] = {}
     for one in cls.list_order():
@@ -312,14 +316,14 @@ def _list_called_by(cls: Class, name: str) -> set[str]:
 class _Watch:
     """Which members of a node the callback leaves changed, of those that something else reads."""
 
-    def __init__(self, machine: Machine):
+    def __init__(self, machine: PythonMachine):
         self._machine = machine
-        self._node: Instance | None = None
+        self._node: PythonObject | None = None
         self._before: dict[str, Any] = {}
         self._sizes: dict[str, int] = {}
         self._names: set[str] = set()
 
-    def start(self, node: Instance | None, function: Function) -> None:
+    def start(self, node: PythonObject | None, function: PythonFunction) -> None:
         """Remembers the members as they are."""
         if node is None:
             return
@@ -350,14 +354,14 @@ class _Watch:
     def _differs(self, before: Any, after: Any) -> bool:
         if is_number(before) and is_number(after):
             return not self._machine.is_true(self._machine.compare(ast.Eq, before, after))
-        if isinstance(before, (str, Text)) and isinstance(after, (str, Text)):
+        if isinstance(before, (str, SymbolicText)) and isinstance(after, (str, SymbolicText)):
             return not self._machine.is_true(self._machine.compare(ast.Eq, before, after))
         return True
 
 
 def _measure(value: Any) -> int:
     """Something that changes when a list or message is changed in place."""
-    if isinstance(value, Items):
+    if isinstance(value, ListValue):
         return hash((len(value.elements), tuple(map(id, value.elements))))
     if isinstance(value, dict):
         return hash(tuple((repr(key), id(one)) for key, one in value.items()))

@@ -9,27 +9,27 @@ from __future__ import annotations
 import ast
 import builtins
 import math
-import struct
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import z3
 
-from ..outcomes import InputKind
 from . import operators, texts
 from .messages import Messages
-from .modules import Class, Function, Handle, Instance, Method, Moment, Outside
+from .modules import Handle, KnownMethod, Outside, PythonClass, PythonFunction, PythonObject, TimeValue
 from .terms import (
     FLOAT64,
-    Items,
+    ListValue,
     NotModelledError,
     Opaque,
     Real,
+    RealSpan,
     Record,
-    Span,
-    Text,
+    SymbolicText,
     Truth,
     Whole,
+    convert_to_real,
+    convert_to_whole,
     get_span,
     is_number,
     is_symbolic,
@@ -37,12 +37,10 @@ from .terms import (
     make_real,
     make_truth,
     make_whole,
-    to_real,
-    to_whole,
 )  # fmt: skip
 
-if TYPE_CHECKING:
-    from .machine import Machine
+Machine = Any
+"""The executor, which imports this module."""
 
 RECORD_METHODS = frozenset((
     "to_sec", "to_nsec", "to_time", "is_zero", "serialize", "deserialize", "serialize_numpy",
@@ -184,9 +182,9 @@ def call_outside(machine: Machine, name: str, given: list[Any], named: dict[str,
         return _compute_outside(machine, name, given)
     own = getattr(builtins, name.removeprefix("builtins."), None)
     if isinstance(own, type) and issubclass(own, BaseException):
-        from .run import ThrownError
+        from .run import PythonThrownError
 
-        return ThrownError(own.__name__, "", run.place)
+        return PythonThrownError(own.__name__, "", run.place)
     run.not_modelled[f"{name}()"] = None
     return Opaque(f"{name}()")
 
@@ -225,26 +223,28 @@ def make_like(machine: Machine, path: str, value: Any) -> Any:
         return run.get_whole(path, 64, True)
     if isinstance(value, (float, Real)):
         return run.get_real(path, 64)
-    if isinstance(value, (str, Text)):
+    if isinstance(value, (str, SymbolicText)):
         return run.get_text(path)
     return Opaque(path)
 
 
-def _ask_time(machine: Machine) -> Moment:
+def _ask_time(machine: Machine) -> TimeValue:
     term = machine.run.get_whole(machine.run.make_name("~now"), 64, True)
     machine.run.assume(z3.And(term.term >= 0, term.term < 2**62))
-    return Moment(Whole(term.term, 0, 2**62 - 1))
+    return TimeValue(Whole(term.term, 0, 2**62 - 1))
 
 
-def _divide_moment(value: Moment) -> Any:
-    real = make_real(to_real(value.nanoseconds), get_span(value.nanoseconds))
-    return operators_divide(real, 1e9)
+def _divide_moment(value: TimeValue) -> Any:
+    real = make_real(convert_to_real(value.nanoseconds), get_span(value.nanoseconds))
+    return divide_by(real, 1e9)
 
 
-def operators_divide(value: Any, by: float) -> Any:
+def divide_by(value: Any, by: float) -> Any:
     """A float divided by a number that is not 0."""
     return (
-        value / by if isinstance(value, float) else make_real(z3.fpDiv(z3.RNE(), to_real(value), z3.FPVal(by, FLOAT64)))
+        value / by
+        if isinstance(value, float)
+        else make_real(z3.fpDiv(z3.RNE(), convert_to_real(value), z3.FPVal(by, FLOAT64)))
     )
 
 
@@ -253,16 +253,16 @@ def _make_moment(machine: Machine, name: str, given: Sequence[Any], named: dict[
     if named.get("seconds") is not None or named.get("nanoseconds") is not None:
         given = [named.get("seconds", 0), named.get("nanoseconds", 0)]
     if not given:
-        return Moment(0, is_span)
+        return TimeValue(0, is_span)
     if any(is_symbolic(one) or not isinstance(one, (int, float)) for one in given):
         return Opaque(name)
     seconds, more = given[0], given[1] if len(given) > 1 else 0
-    return Moment(round(seconds * 1e9) + int(more), is_span)
+    return TimeValue(round(seconds * 1e9) + int(more), is_span)
 
 
-def to_moment(machine: Machine, value: Any) -> Moment:
+def read_time(machine: Machine, value: Any) -> TimeValue:
     """The moment of a message's time, of a moment itself. Raises NotModelledError for others."""
-    if isinstance(value, Moment):
+    if isinstance(value, TimeValue):
         return value
     if isinstance(value, Record):
         names = machine.messages.list_fields(value.type)
@@ -270,15 +270,15 @@ def to_moment(machine: Machine, value: Any) -> Moment:
             seconds, rest = (machine.get_member(value, name) for name in names)
             if is_whole(seconds) and is_whole(rest):
                 total = machine.calculate(ast.Add, machine.calculate(ast.Mult, seconds, 10**9), rest)
-                return Moment(total, value.type.endswith("Duration"))
+                return TimeValue(total, value.type.endswith("Duration"))
     raise NotModelledError("a time")
 
 
 def calculate_moment(machine: Machine, kind: type[ast.operator], left: Any, right: Any) -> Any:
     """`left kind right` of times and durations."""
     if kind in (ast.Add, ast.Sub):
-        a, b = to_moment(machine, left), to_moment(machine, right)
-        return Moment(
+        a, b = read_time(machine, left), read_time(machine, right)
+        return TimeValue(
             machine.calculate(kind, a.nanoseconds, b.nanoseconds), a.is_span or (kind is ast.Sub and not b.is_span)
         )
     return Opaque("a time")
@@ -288,7 +288,7 @@ def compare_moments(machine: Machine, kind: type[ast.cmpop], left: Any, right: A
     """`left kind right` of times and durations."""
     if left is None or right is None:
         return kind is ast.NotEq
-    a, b = to_moment(machine, left), to_moment(machine, right)
+    a, b = read_time(machine, left), read_time(machine, right)
     return operators.compare(kind, a.nanoseconds, b.nanoseconds)
 
 
@@ -297,7 +297,7 @@ def compare_moments(machine: Machine, kind: type[ast.cmpop], left: Any, right: A
 
 def find_member(machine: Machine, owner: Any, name: str) -> Any:
     """A member of a value that the executor itself knows."""
-    if isinstance(owner, Moment):
+    if isinstance(owner, TimeValue):
         if name == "nanoseconds":
             return owner.nanoseconds
         if name in ("secs", "sec"):
@@ -305,39 +305,41 @@ def find_member(machine: Machine, owner: Any, name: str) -> Any:
         if name in ("nsecs", "nanosec"):
             return machine.calculate(ast.Mod, owner.nanoseconds, 10**9)
     if isinstance(owner, Handle):
-        if owner.kind == "super" and isinstance(owner.content, Instance):
+        if owner.kind == "super" and isinstance(owner.content, PythonObject):
             for base in owner.content.cls.list_order()[1:]:
                 found = base.members.get(name)
-                if isinstance(found, Function):
-                    from .modules import Bound
+                if isinstance(found, PythonFunction):
+                    from .modules import BoundMethod
 
-                    return Bound(found, owner.content)
-            return Method(owner.content, name) if name != "__init__" else Outside("rclpy.init")
+                    return BoundMethod(found, owner.content)
+            return KnownMethod(owner.content, name) if name != "__init__" else Outside("rclpy.init")
         if owner.kind == "parameter" and name == "value":
             return owner.content
     if isinstance(owner, (int, float)) and not isinstance(owner, bool) and name in ("real", "imag"):
         return owner if name == "real" else 0
-    if isinstance(owner, (str, Text)) and not hasattr(str, name):
+    if isinstance(owner, (str, SymbolicText)) and not hasattr(str, name):
         raise machine.run.throw("AttributeError", name)
     if isinstance(owner, (int, float, Whole, Real)) and not hasattr(float, name) and not hasattr(int, name):
         raise machine.run.throw("AttributeError", name)
-    return Method(owner, name)
+    return KnownMethod(owner, name)
 
 
 def call_method(machine: Machine, owner: Any, name: str, given: list[Any], named: dict[str, Any]) -> Any:
     """Calls a method of a value that the executor itself knows."""
-    if isinstance(owner, (str, Text)):
+    if isinstance(owner, (str, SymbolicText)):
         return _call_text(machine, owner, name, given, named)
-    if isinstance(owner, Items):
+    if isinstance(owner, ListValue):
         return _call_items(machine, owner, name, given)
     if isinstance(owner, dict):
         return _call_dictionary(machine, owner, name, given)
     if isinstance(owner, Handle):
         return _call_handle_method(machine, owner, name, given, named)
-    if isinstance(owner, Instance):
+    if isinstance(owner, PythonObject):
         return _call_base(machine, owner, name, given, named)
-    if isinstance(owner, Moment) or (isinstance(owner, Record) and name in ("to_sec", "to_nsec", "to_time", "is_zero")):
-        moment = to_moment(machine, owner)
+    if isinstance(owner, TimeValue) or (
+        isinstance(owner, Record) and name in ("to_sec", "to_nsec", "to_time", "is_zero")
+    ):
+        moment = read_time(machine, owner)
         if name == "to_sec" or name == "to_time":
             return _divide_moment(moment) if is_symbolic(moment.nanoseconds) else moment.nanoseconds / 1e9
         if name == "to_nsec":
@@ -347,11 +349,13 @@ def call_method(machine: Machine, owner: Any, name: str, given: list[Any], named
         if name == "to_msg":
             return Opaque("a time")
         if name == "seconds_nanoseconds":
-            return Items([find_member(machine, moment, "secs"), find_member(machine, moment, "nsecs")], is_frozen=True)
+            return ListValue(
+                [find_member(machine, moment, "secs"), find_member(machine, moment, "nsecs")], is_frozen=True
+            )
     if isinstance(owner, Record):
         return Opaque(f"{owner.type}.{name}()")
     if isinstance(owner, (float, Real)) and name == "is_integer":
-        term = to_real(owner)
+        term = convert_to_real(owner)
         return make_truth(z3.fpEQ(z3.fpRoundToIntegral(z3.RTZ(), term), term))
     raise NotModelledError(f"the method {name}")
 
@@ -364,7 +368,7 @@ def _call_text(machine: Machine, owner: Any, name: str, given: list[Any], named:
     if name == "join":
         return _join(machine, owner, machine.iterate(given[0]))
     if isinstance(owner, str) and not any(is_symbolic(one) for one in (*given, *named.values())):
-        plain = [tuple(one.elements) if isinstance(one, Items) else one for one in given]
+        plain = [tuple(one.elements) if isinstance(one, ListValue) else one for one in given]
         try:
             found = getattr(owner, name)(*plain, **named)
         except (
@@ -378,15 +382,15 @@ def _call_text(machine: Machine, owner: Any, name: str, given: list[Any], named:
             MemoryError,
         ) as error:
             raise machine.run.throw(type(error).__name__, str(error)) from error
-        return Items(list(found)) if isinstance(found, list) else found
+        return ListValue(list(found)) if isinstance(found, list) else found
     return texts.call_method(machine.run, owner, name, given)
 
 
 def join_text(machine: Machine, parts: list[Any]) -> Any:
     """An f-string of parts."""
-    if all(isinstance(one, (str, Text)) for one in parts):
+    if all(isinstance(one, (str, SymbolicText)) for one in parts):
         return _join(machine, "", parts)
-    if not any(is_symbolic(one) or isinstance(one, (Record, Items, dict, Instance)) for one in parts):
+    if not any(is_symbolic(one) or isinstance(one, (Record, ListValue, dict, PythonObject)) for one in parts):
         return "".join(map(str, parts))
     return Opaque("formatted text")
 
@@ -396,7 +400,7 @@ def _join(machine: Machine, between: Any, parts: list[Any]) -> Any:
     for index, one in enumerate(parts):
         if isinstance(one, Opaque):
             return Opaque("joined text")
-        if not isinstance(one, (str, Text)):
+        if not isinstance(one, (str, SymbolicText)):
             raise machine.run.throw("TypeError", "sequence item: expected str")
         if index:
             found.extend(texts.list_characters(machine.run, between))
@@ -404,7 +408,7 @@ def _join(machine: Machine, between: Any, parts: list[Any]) -> Any:
     return texts.make_text(tuple(found))
 
 
-def _call_items(machine: Machine, owner: Items, name: str, given: list[Any]) -> Any:
+def _call_items(machine: Machine, owner: ListValue, name: str, given: list[Any]) -> Any:
     run = machine.run
     elements = run.fix_items(owner)
     if name in ("append", "add"):
@@ -427,9 +431,9 @@ def _call_items(machine: Machine, owner: Items, name: str, given: list[Any]) -> 
             raise run.throw("IndexError", "pop from empty list")
         return elements.pop(index)
     if name == "copy":
-        return Items(list(elements))
+        return ListValue(list(elements))
     if name == "tolist":
-        return Items(list(elements))
+        return ListValue(list(elements))
     if name == "reverse":
         elements.reverse()
         return None
@@ -451,12 +455,12 @@ def _call_items(machine: Machine, owner: Items, name: str, given: list[Any]) -> 
 
 
 def _call_dictionary(machine: Machine, owner: dict[Any, Any], name: str, given: list[Any]) -> Any:
-    from .run import ThrownError
+    from .run import PythonThrownError
 
     if name in ("get", "pop", "setdefault"):
         try:
             found = machine.get_item(owner, given[0])
-        except ThrownError as error:
+        except PythonThrownError as error:
             if error.name != "KeyError" or (name == "pop" and len(given) < 2):
                 raise
             found = given[1] if len(given) > 1 else None
@@ -468,8 +472,8 @@ def _call_dictionary(machine: Machine, owner: dict[Any, Any], name: str, given: 
         return found
     if name in ("keys", "values", "items"):
         if name == "items":
-            return Items([Items([key, value], is_frozen=True) for key, value in owner.items()])
-        return Items(list(owner) if name == "keys" else list(owner.values()))
+            return ListValue([ListValue([key, value], is_frozen=True) for key, value in owner.items()])
+        return ListValue(list(owner) if name == "keys" else list(owner.values()))
     if name == "update" and given and isinstance(given[0], dict):
         owner.update(given[0])
         return None
@@ -539,7 +543,7 @@ def _call_handle_method(machine: Machine, handle: Handle, name: str, given: list
     return Opaque(f"{handle.name}.{name}()")
 
 
-def _call_base(machine: Machine, owner: Instance, name: str, given: list[Any], named: dict[str, Any]) -> Any:
+def _call_base(machine: Machine, owner: PythonObject, name: str, given: list[Any], named: dict[str, Any]) -> Any:
     """A method of a node's class that is not in the workspace: of rclpy's Node."""
     run = machine.run
     if name in _NODE_METHODS:
@@ -573,8 +577,8 @@ def copy_value(value: Any) -> Any:
     """A copy of a message or a list, all the way down."""
     if isinstance(value, Record):
         return Record(value.type, {name: copy_value(one) for name, one in value.fields.items()}, value.is_known)
-    if isinstance(value, Items):
-        return Items([copy_value(one) for one in value.elements], value.size, value.is_frozen)
+    if isinstance(value, ListValue):
+        return ListValue([copy_value(one) for one in value.elements], value.size, value.is_frozen)
     if isinstance(value, dict):
         return {key: copy_value(one) for key, one in value.items()}
     return value
@@ -583,11 +587,11 @@ def copy_value(value: Any) -> Any:
 # Built-in functions.
 
 
-def _len(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+def _call_len(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     value = given[0]
-    if isinstance(value, Text):
+    if isinstance(value, SymbolicText):
         return texts.get_length(value)
-    if isinstance(value, Items):
+    if isinstance(value, ListValue):
         return value.size if value.size is not None else len(value.elements)
     if isinstance(value, (str, dict, bytes, range)):
         return len(value)
@@ -598,11 +602,11 @@ def _len(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     raise NotModelledError("len()")
 
 
-def _int(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+def _call_int(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     if not given:
         return 0
     value = given[0]
-    if isinstance(value, (str, Text)):
+    if isinstance(value, (str, SymbolicText)):
         if isinstance(value, str):
             try:
                 return int(value, *[one for one in given[1:] if isinstance(one, int)])
@@ -612,20 +616,20 @@ def _int(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
             raise NotModelledError("int() with a base")
         return texts.parse_whole(machine.run, value)
     if isinstance(value, Real):
-        return operators.truncate(machine.run, value)
+        return operators.convert_to_integer(machine.run, value)
     if isinstance(value, float):
         try:
             return int(value)
         except (ValueError, OverflowError) as error:
             raise machine.run.throw(type(error).__name__, str(error)) from error
-    return _pass(machine, value, to_whole)
+    return _pass(machine, value, convert_to_whole)
 
 
-def _float(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+def _call_float(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     if not given:
         return 0.0
     value = given[0]
-    if isinstance(value, Text):
+    if isinstance(value, SymbolicText):
         return texts.parse_real(machine.run, value)
     if isinstance(value, str):
         try:
@@ -633,37 +637,37 @@ def _float(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
         except ValueError as error:
             raise machine.run.throw("ValueError", "could not convert string to float") from error
     if is_number(value):
-        return value if isinstance(value, (float, Real)) else make_real(to_real(value), get_span(value))
+        return value if isinstance(value, (float, Real)) else make_real(convert_to_real(value), get_span(value))
     return _pass(machine, value, lambda one: one)
 
 
 def _pass(machine: Machine, value: Any, change: Callable[[Any], Any]) -> Any:
     if isinstance(value, Opaque):
         return Opaque(value.name)
-    if value is None or isinstance(value, (Items, dict)):
+    if value is None or isinstance(value, (ListValue, dict)):
         raise machine.run.throw("TypeError", "argument must be a string or a number")
     if is_number(value):
         return change(value)
     raise NotModelledError("a conversion")
 
 
-def _bool(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+def _call_bool(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     return machine.is_true(given[0]) if given else False
 
 
-def _str(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+def _call_str(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     value = given[0] if given else ""
-    if isinstance(value, (str, Text)):
+    if isinstance(value, (str, SymbolicText)):
         return value
     if isinstance(value, (int, float, type(None))):
         return str(value)
     return Opaque("text of a value")
 
 
-def _range(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+def _call_range(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     numbers: list[int] = []
     for one in given:
-        whole = to_whole(one)
+        whole = convert_to_whole(one)
         if isinstance(whole, Whole):
             if len(given) > 2 or whole.low < -1 or whole.high > 64:
                 whole = _fix_small(machine, whole)
@@ -690,7 +694,7 @@ def _fix_small(machine: Machine, whole: Whole) -> int:
     raise NotModelledError(f"a loop of more than {machine.run.bounds.loops} rounds")
 
 
-def _abs(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+def _call_abs(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     value = given[0]
     if isinstance(value, Opaque):
         return value
@@ -726,7 +730,7 @@ def _choose_extreme(is_least: bool) -> Callable[[Machine, list[Any], dict[str, A
 
 def _merge(condition: Truth, one: Any, other: Any) -> Any:
     """One of two numbers, as a condition says; a float where one of them is."""
-    one, other = to_whole(one), to_whole(other)
+    one, other = convert_to_whole(one), convert_to_whole(other)
     if is_whole(one) and is_whole(other):
         from .terms import count_bits, extend, get_range
 
@@ -734,50 +738,50 @@ def _merge(condition: Truth, one: Any, other: Any) -> Any:
         bits = count_bits(min(a, c), max(b, d))
         return make_whole(z3.If(condition.term, extend(one, bits), extend(other, bits)), min(a, c), max(b, d))
     a, b = get_span(one), get_span(other)
-    span = Span(min(a.low, b.low), max(a.high, b.high), a.is_number and b.is_number)
+    span = RealSpan(min(a.low, b.low), max(a.high, b.high), a.is_number and b.is_number)
     narrow = operators.narrow(one, other)
     if narrow is None:
-        return make_real(z3.If(condition.term, to_real(one), to_real(other)), span)
+        return make_real(z3.If(condition.term, convert_to_real(one), convert_to_real(other)), span)
     single = z3.If(condition.term, *narrow)
     return Real(z3.fpFPToFP(z3.RNE(), single, FLOAT64), span, single)
 
 
-def _sum(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+def _call_sum(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     total: Any = given[1] if len(given) > 1 else 0
     for one in machine.iterate(given[0]):
         total = machine.calculate(ast.Add, total, one)
     return total
 
 
-def _round(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+def _call_round(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     value = given[0]
     if isinstance(value, Real):
         if len(given) > 1:
             return Opaque("round()")
-        return operators.truncate(machine.run, value, z3.RNE())
+        return operators.convert_to_integer(machine.run, value, z3.RNE())
     if isinstance(value, float):
         try:
             return round(value, *[one for one in given[1:] if isinstance(one, int)])
         except (ValueError, OverflowError) as error:
             raise machine.run.throw(type(error).__name__, str(error)) from error
-    return _pass(machine, value, to_whole)
+    return _pass(machine, value, convert_to_whole)
 
 
-def _isinstance(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
-    value, kinds = given[0], given[1].elements if isinstance(given[1], Items) else [given[1]]
+def _call_isinstance(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+    value, kinds = given[0], given[1].elements if isinstance(given[1], ListValue) else [given[1]]
     if isinstance(value, Opaque):
         return Opaque(value.name)
     for kind in kinds:
-        if isinstance(kind, Class):
-            if isinstance(value, Instance) and kind in value.cls.list_order():
+        if isinstance(kind, PythonClass):
+            if isinstance(value, PythonObject) and kind in value.cls.list_order():
                 return True
         elif isinstance(kind, Outside):
             name = kind.name.removeprefix("builtins.")
             known = {
                 "int": is_whole(value), "float": isinstance(value, (float, Real)),
-                "bool": isinstance(value, (bool, Truth)), "str": isinstance(value, (str, Text)),
-                "list": isinstance(value, Items) and not value.is_frozen,
-                "tuple": isinstance(value, Items) and value.is_frozen, "dict": isinstance(value, dict),
+                "bool": isinstance(value, (bool, Truth)), "str": isinstance(value, (str, SymbolicText)),
+                "list": isinstance(value, ListValue) and not value.is_frozen,
+                "tuple": isinstance(value, ListValue) and value.is_frozen, "dict": isinstance(value, dict),
             }  # fmt: skip
             if name in known:
                 if known[name]:
@@ -790,26 +794,26 @@ def _isinstance(machine: Machine, given: list[Any], named: dict[str, Any]) -> An
     return False
 
 
-def _any(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+def _call_any(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     return any(machine.is_true(one) for one in machine.iterate(given[0]))
 
 
-def _all(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+def _call_all(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     return all(machine.is_true(one) for one in machine.iterate(given[0]))
 
 
-def _list(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+def _call_list(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     if given and isinstance(given[0], Opaque):
         return given[0]
-    return Items(machine.iterate(given[0]) if given else [])
+    return ListValue(machine.iterate(given[0]) if given else [])
 
 
-def _tuple(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
-    found = _list(machine, given, named)
-    return Items(found.elements, is_frozen=True) if isinstance(found, Items) else found
+def _call_tuple(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+    found = _call_list(machine, given, named)
+    return ListValue(found.elements, is_frozen=True) if isinstance(found, ListValue) else found
 
 
-def _dict(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+def _call_dict(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     if not given:
         return dict(named)
     if isinstance(given[0], dict):
@@ -820,76 +824,78 @@ def _dict(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     return {**dict(pairs), **named}
 
 
-def _enumerate(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+def _call_enumerate(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     start = named.get("start", given[1] if len(given) > 1 else 0)
-    return Items([Items([start + at, one], is_frozen=True) for at, one in enumerate(machine.iterate(given[0]))])
+    return ListValue([ListValue([start + at, one], is_frozen=True) for at, one in enumerate(machine.iterate(given[0]))])
 
 
-def _zip(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+def _call_zip(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     rows = zip(*[machine.iterate(one) for one in given], strict=False)
-    return Items([Items(list(row), is_frozen=True) for row in rows])
+    return ListValue([ListValue(list(row), is_frozen=True) for row in rows])
 
 
-def _map(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
-    return Items([machine.call(given[0], list(row), {}) for row in zip(*map(machine.iterate, given[1:]), strict=False)])
+def _call_map(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+    return ListValue(
+        [machine.call(given[0], list(row), {}) for row in zip(*map(machine.iterate, given[1:]), strict=False)]
+    )
 
 
-def _filter(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+def _call_filter(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     keep = given[0]
-    return Items([
+    return ListValue([
         one for one in machine.iterate(given[1])
         if machine.is_true(one if keep is None else machine.call(keep, [one], {}))
     ])  # fmt: skip
 
 
-def _reversed(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
-    return Items(machine.iterate(given[0])[::-1])
+def _call_reversed(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+    return ListValue(machine.iterate(given[0])[::-1])
 
 
-def _sorted(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+def _call_sorted(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     elements = machine.iterate(given[0])
     if named or any(is_symbolic(one) or not isinstance(one, (int, float, str)) for one in elements):
         raise NotModelledError("sorted() of values that are not known")
     try:
-        return Items(sorted(elements))
+        return ListValue(sorted(elements))
     except TypeError as error:
         raise machine.run.throw("TypeError", str(error)) from error
 
 
-def _hasattr(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
-    from .run import ThrownError
+def _call_hasattr(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+    from .run import PythonThrownError
 
     if not isinstance(given[1], str):
         return Opaque("hasattr()")
     try:
         found = machine.get_member(given[0], given[1])
-    except ThrownError as error:
+    except PythonThrownError as error:
         if error.name == "AttributeError":
             return False
         raise
-    return Opaque("hasattr()") if isinstance(found, (Opaque, Method)) else True
+    return Opaque("hasattr()") if isinstance(found, (Opaque, KnownMethod)) else True
 
 
-def _getattr(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
-    from .run import ThrownError
+def _call_getattr(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+    from .run import PythonThrownError
 
     if not isinstance(given[1], str):
         raise NotModelledError("getattr() of a name that is not known")
     try:
         return machine.get_member(given[0], given[1])
-    except ThrownError as error:
+    except PythonThrownError as error:
         if error.name == "AttributeError" and len(given) > 2:
             return given[2]
         raise
 
 
-def _setattr(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+def _call_setattr(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     if not isinstance(given[1], str):
         raise NotModelledError("setattr() of a name that is not known")
     machine.set_member(given[0], given[1], given[2])
 
 
-def _chr(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+def _call_chr(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     if isinstance(given[0], int):
         try:
             return chr(given[0])
@@ -898,25 +904,27 @@ def _chr(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
     return Opaque("chr()")
 
 
-def _ord(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
-    characters = texts.list_characters(machine.run, given[0]) if isinstance(given[0], (str, Text)) else ()
+def _call_ord(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+    characters = texts.list_characters(machine.run, given[0]) if isinstance(given[0], (str, SymbolicText)) else ()
     if len(characters) != 1:
         raise machine.run.throw("TypeError", "ord() expected a character")
     one = characters[0]
     return one if isinstance(one, int) else make_whole(z3.ZeroExt(8, one), 0, 127)
 
 
-def _type(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
-    return given[0].cls if isinstance(given[0], Instance) else Opaque("type()")
+def _call_type(machine: Machine, given: list[Any], named: dict[str, Any]) -> Any:
+    return given[0].cls if isinstance(given[0], PythonObject) else Opaque("type()")
 
 
 _BUILT_INS: dict[str, Callable[[Any, list[Any], dict[str, Any]], Any]] = {
-    "len": _len, "int": _int, "long": _int, "float": _float, "bool": _bool, "str": _str, "unicode": _str, "repr": _str,
-    "range": _range, "xrange": _range, "abs": _abs, "min": _choose_extreme(True), "max": _choose_extreme(False),
-    "sum": _sum, "round": _round, "isinstance": _isinstance, "any": _any, "all": _all, "list": _list, "tuple": _tuple,
-    "dict": _dict, "enumerate": _enumerate, "zip": _zip, "map": _map, "filter": _filter, "reversed": _reversed,
-    "sorted": _sorted, "hasattr": _hasattr, "getattr": _getattr, "setattr": _setattr, "chr": _chr, "ord": _ord,
-    "type": _type, "set": _list, "frozenset": _list, "bytearray": _list,
+    "len": _call_len, "int": _call_int, "long": _call_int, "float": _call_float, "bool": _call_bool,
+    "str": _call_str, "unicode": _call_str, "repr": _call_str, "range": _call_range, "xrange": _call_range,
+    "abs": _call_abs, "min": _choose_extreme(True), "max": _choose_extreme(False), "sum": _call_sum,
+    "round": _call_round, "isinstance": _call_isinstance, "any": _call_any, "all": _call_all, "list": _call_list,
+    "tuple": _call_tuple, "dict": _call_dict, "enumerate": _call_enumerate, "zip": _call_zip, "map": _call_map,
+    "filter": _call_filter, "reversed": _call_reversed, "sorted": _call_sorted, "hasattr": _call_hasattr,
+    "getattr": _call_getattr, "setattr": _call_setattr, "chr": _call_chr, "ord": _call_ord, "type": _call_type,
+    "set": _call_list, "frozenset": _call_list, "bytearray": _call_list,
 }  # fmt: skip
 
 
@@ -943,7 +951,7 @@ def _compute(function: Callable[..., Any]) -> Callable[[Machine, list[Any]], Any
             machine.run.assume(known)
             if all(get_span(one).is_finite for one in given):
                 machine.run.assume(z3.Not(z3.fpIsNaN(value.term)))
-                return Real(value.term, Span(-bound, bound, True))
+                return Real(value.term, RealSpan(-bound, bound, True))
         return value
 
     return compute
@@ -951,7 +959,7 @@ def _compute(function: Callable[..., Any]) -> Callable[[Machine, list[Any]], Any
 
 def _refuse_outside_domain(machine: Machine, name: str, given: list[Any]) -> None:
     """Raises what Python's functions raise for numbers that they have no value for."""
-    term, one = to_real(given[0]), z3.FPVal(1.0, FLOAT64)
+    term, one = convert_to_real(given[0]), z3.FPVal(1.0, FLOAT64)
     bad: z3.BoolRef | None = None
     if name in ("sin", "cos", "tan") and not get_span(given[0]).is_finite:
         bad = z3.fpIsInf(term)
@@ -960,7 +968,7 @@ def _refuse_outside_domain(machine: Machine, name: str, given: list[Any]) -> Non
     elif name in ("log", "log10"):
         bad = z3.fpLEQ(term, z3.FPVal(0.0, FLOAT64))
     elif name == "fmod":
-        bad = z3.Or(z3.fpIsInf(term), z3.fpIsZero(to_real(given[1])))
+        bad = z3.Or(z3.fpIsInf(term), z3.fpIsZero(convert_to_real(given[1])))
     if bad is not None and machine.run.decide(make_truth(bad)):
         raise machine.run.throw("ValueError", "math domain error")
     if name == "exp" and machine.run.decide(make_truth(z3.And(
@@ -983,22 +991,22 @@ _BOUNDS = {
 
 
 def _is_nan(machine: Machine, given: list[Any]) -> Any:
-    return not get_span(given[0]).is_number and make_truth(z3.fpIsNaN(to_real(given[0])))
+    return not get_span(given[0]).is_number and make_truth(z3.fpIsNaN(convert_to_real(given[0])))
 
 
 def _is_infinite(machine: Machine, given: list[Any]) -> Any:
-    return not get_span(given[0]).is_finite and make_truth(z3.fpIsInf(to_real(given[0])))
+    return not get_span(given[0]).is_finite and make_truth(z3.fpIsInf(convert_to_real(given[0])))
 
 
 def _is_finite(machine: Machine, given: list[Any]) -> Any:
-    term = to_real(given[0])
+    term = convert_to_real(given[0])
     if get_span(given[0]).is_finite:
         return True
     return make_truth(z3.Not(z3.Or(z3.fpIsNaN(term), z3.fpIsInf(term))))
 
 
 def _take_root(machine: Machine, given: list[Any]) -> Any:
-    term = to_real(given[0])
+    term = convert_to_real(given[0])
     if machine.run.decide(operators.compare(ast.Lt, given[0], 0.0)):
         raise machine.run.throw("ValueError", "math domain error")
     return make_real(z3.fpSqrt(z3.RNE(), term))
@@ -1008,13 +1016,13 @@ def _round_to(rounding: Any) -> Callable[[Machine, list[Any]], Any]:
     def round_to(machine: Machine, given: list[Any]) -> Any:
         value = given[0]
         if isinstance(value, Real):
-            return operators.truncate(machine.run, value, rounding)
+            return operators.convert_to_integer(machine.run, value, rounding)
         if isinstance(value, float):
             try:
                 return math.floor(value) if rounding.eq(z3.RTN()) else math.ceil(value)
             except (ValueError, OverflowError) as error:
                 raise machine.run.throw(type(error).__name__, str(error)) from error
-        return to_whole(value)
+        return convert_to_whole(value)
 
     return round_to
 
@@ -1023,12 +1031,12 @@ def _scale(by: float) -> Callable[[Machine, list[Any]], Any]:
     return lambda machine, given: machine.calculate(ast.Mult, given[0], by)
 
 
-def _magnitude(machine: Machine, given: list[Any]) -> Any:
-    return make_real(z3.fpAbs(to_real(given[0])))
+def _find_magnitude(machine: Machine, given: list[Any]) -> Any:
+    return make_real(z3.fpAbs(convert_to_real(given[0])))
 
 
 _MATH: dict[str, Callable[[Any, list[Any]], Any]] = {
-    "isnan": _is_nan, "isinf": _is_infinite, "isfinite": _is_finite, "sqrt": _take_root, "fabs": _magnitude,
+    "isnan": _is_nan, "isinf": _is_infinite, "isfinite": _is_finite, "sqrt": _take_root, "fabs": _find_magnitude,
     "floor": _round_to(z3.RTN()), "ceil": _round_to(z3.RTP()), "radians": _scale(math.pi / 180),
     "degrees": _scale(180 / math.pi), "deg2rad": _scale(math.pi / 180), "rad2deg": _scale(180 / math.pi),
     **{name: _compute(getattr(math, name)) for name in (
@@ -1036,12 +1044,3 @@ _MATH: dict[str, Callable[[Any, list[Any]], Any]] = {
         "sinh", "cosh", "tanh",
     )},
 }  # fmt: skip
-
-
-def to_bits(value: float) -> int:
-    """The IEEE bits of a float."""
-    return struct.unpack("<Q", struct.pack("<d", value))[0]
-
-
-SCALARS = (InputKind.INTEGER, InputKind.BOOLEAN, InputKind.FLOAT32, InputKind.FLOAT64)
-"""Kinds of inputs that are one number."""

@@ -13,27 +13,27 @@ from ..outcomes import CodeLine, Sent
 from . import library, operators, texts
 from .messages import Messages
 from .modules import (
-    Bound,
-    Class,
+    BoundMethod,
     FindModule,
-    Function,
     Handle,
-    Instance,
-    Method,
+    KnownMethod,
     ModuleCode,
-    Moment,
     Outside,
+    PythonClass,
+    PythonFunction,
+    PythonObject,
     Scope,
+    TimeValue,
     Unsettled,
 )  # fmt: skip
-from .run import Run, ThrownError
+from .run import PythonRun, PythonThrownError
 from .terms import (
-    Items,
+    ListValue,
     NotModelledError,
     Opaque,
     Real,
     Record,
-    Text,
+    SymbolicText,
     Truth,
     Whole,
     is_number,
@@ -60,10 +60,10 @@ class _ReturnSignal(Exception):
         self.value = value
 
 
-class Machine:
-    """Executes functions of a workspace on one Run. find_module: other modules; messages: makes them."""
+class PythonMachine:
+    """Executes functions of a workspace on one PythonRun. find_module: other modules; messages: makes them."""
 
-    def __init__(self, run: Run, messages: Messages, find_module: FindModule):
+    def __init__(self, run: PythonRun, messages: Messages, find_module: FindModule):
         self.run, self.messages, self._find_module = run, messages, find_module
         self._depth = 0
         self.is_quiet = False
@@ -84,22 +84,22 @@ class Machine:
         """Executes a statement; where that cannot be done, its names are of things that nothing is known of."""
         try:
             self.execute(statement, scope)
-        except (NotModelledError, ThrownError):
+        except (NotModelledError, PythonThrownError):
             for node in ast.walk(statement):
                 if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
                     scope.names.setdefault(node.id, Opaque(node.id))
                 elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
                     try:
                         owner = self.evaluate(node.value, scope)
-                    except (NotModelledError, ThrownError):
+                    except (NotModelledError, PythonThrownError):
                         continue
-                    if isinstance(owner, Instance):
+                    if isinstance(owner, PythonObject):
                         owner.members.setdefault(node.attr, Opaque(node.attr))
         except (_BreakSignal, _ContinueSignal, _ReturnSignal):
             pass
 
-    def call_function(self, function: Function, given: Sequence[Any], named: dict[str, Any]) -> Any:
-        """Calls a function of the workspace. Raises ThrownError and NotModelledError."""
+    def call_function(self, function: PythonFunction, given: Sequence[Any], named: dict[str, Any]) -> Any:
+        """Calls a function of the workspace. Raises PythonThrownError and NotModelledError."""
         node = function.node
         if self._depth > _DEEPEST:
             raise NotModelledError("calls of more than 40 levels")
@@ -123,7 +123,7 @@ class Machine:
             self._depth -= 1
             self.run.place = place
 
-    def _bind(self, function: Function, given: list[Any], named: dict[str, Any]) -> dict[str, Any]:
+    def _bind(self, function: PythonFunction, given: list[Any], named: dict[str, Any]) -> dict[str, Any]:
         arguments = function.node.args
         positional = [*arguments.posonlyargs, *arguments.args]
         names: dict[str, Any] = {}
@@ -132,9 +132,9 @@ class Machine:
         if len(given) > len(positional):
             if arguments.vararg is None:
                 raise self.run.throw("TypeError", f"{function.name}() takes {len(positional)} arguments")
-            names[arguments.vararg.arg] = Items(given[len(positional) :], is_frozen=True)
+            names[arguments.vararg.arg] = ListValue(given[len(positional) :], is_frozen=True)
         elif arguments.vararg is not None:
-            names[arguments.vararg.arg] = Items([], is_frozen=True)
+            names[arguments.vararg.arg] = ListValue([], is_frozen=True)
         known = {one.arg for one in (*positional, *arguments.kwonlyargs)}
         rest = {name: value for name, value in named.items() if name not in known}
         names |= {name: value for name, value in named.items() if name in known}
@@ -155,11 +155,11 @@ class Machine:
                 raise self.run.throw("TypeError", f"{function.name}() misses argument {parameter.arg}")
         return names
 
-    def make_instance(self, cls: Class, given: Sequence[Any], named: dict[str, Any]) -> Instance:
+    def make_instance(self, cls: PythonClass, given: Sequence[Any], named: dict[str, Any]) -> PythonObject:
         """An object of a class of the workspace, with its constructor run."""
-        instance = Instance(cls)
+        instance = PythonObject(cls)
         maker = cls.find("__init__")
-        if isinstance(maker, Function):
+        if isinstance(maker, PythonFunction):
             self.call_function(maker, [instance, *given], named)
         elif cls.find("__annotations__"):
             raise NotModelledError(f"how {cls.node.name} is made")
@@ -202,7 +202,7 @@ class Machine:
     def _execute_augassign(self, node: ast.AugAssign, scope: Scope) -> None:
         old = self.evaluate(_make_load(node.target), scope)
         value = self.evaluate(node.value, scope)
-        if isinstance(old, Items) and not old.is_frozen and isinstance(node.op, ast.Add):
+        if isinstance(old, ListValue) and not old.is_frozen and isinstance(node.op, ast.Add):
             self.run.fix_items(old).extend(self.iterate(value))
             self.assign(node.target, old, scope)
             return
@@ -257,28 +257,28 @@ class Machine:
     def _execute_raise(self, node: ast.Raise, scope: Scope) -> None:
         if node.exc is None:
             caught = self._look_up("~caught", scope)
-            raise caught if isinstance(caught, ThrownError) else self.run.throw("RuntimeError")
+            raise caught if isinstance(caught, PythonThrownError) else self.run.throw("RuntimeError")
         value = self.evaluate(node.exc, scope)
         raise self._make_thrown(value)
 
-    def _make_thrown(self, value: Any) -> ThrownError:
-        if isinstance(value, ThrownError):
+    def _make_thrown(self, value: Any) -> PythonThrownError:
+        if isinstance(value, PythonThrownError):
             return value
-        if isinstance(value, Class):
-            return self._make_thrown(Instance(value))
-        if isinstance(value, Instance):
+        if isinstance(value, PythonClass):
+            return self._make_thrown(PythonObject(value))
+        if isinstance(value, PythonObject):
             names = [one.node.name for one in value.cls.list_order()]
             outside = [name.rpartition(".")[2] for name in value.cls.list_outside()]
-            return ThrownError(names[0], "", self.run.place, (*names[1:], *outside, "Exception"), value)
+            return PythonThrownError(names[0], "", self.run.place, (*names[1:], *outside, "Exception"), value)
         if isinstance(value, Outside):
-            return ThrownError(value.name.rpartition(".")[2], "", self.run.place, ("Exception",))
+            return PythonThrownError(value.name.rpartition(".")[2], "", self.run.place, ("Exception",))
         raise NotModelledError("an exception that is not known")
 
     def _execute_try(self, node: ast.Try, scope: Scope) -> None:
         try:
             try:
                 self.execute_all(node.body, scope)
-            except ThrownError as error:
+            except PythonThrownError as error:
                 self._handle(node, error, scope)
             else:
                 self.execute_all(node.orelse, scope)
@@ -289,7 +289,7 @@ class Machine:
             raise
         self.execute_all(node.finalbody, scope)
 
-    def _handle(self, node: ast.Try, error: ThrownError, scope: Scope) -> None:
+    def _handle(self, node: ast.Try, error: PythonThrownError, scope: Scope) -> None:
         for handler in node.handlers:
             if handler.type is None or any(error.is_caught_by(name) for name in self._list_caught(handler.type, scope)):
                 before = scope.names.get("~caught", _MISSING)
@@ -308,10 +308,10 @@ class Machine:
 
     def _list_caught(self, node: ast.expr, scope: Scope) -> list[str]:
         value = self.evaluate(node, scope)
-        found = value.elements if isinstance(value, Items) else [value]
+        found = value.elements if isinstance(value, ListValue) else [value]
         names: list[str] = []
         for one in found:
-            if isinstance(one, Class):
+            if isinstance(one, PythonClass):
                 names.append(one.node.name)
             elif isinstance(one, Outside):
                 names.append(one.name.rpartition(".")[2])
@@ -340,7 +340,7 @@ class Machine:
                     if key not in owner:
                         raise self.run.throw("KeyError", str(key))
                     del owner[key]
-                elif isinstance(owner, Items) and isinstance(key, int):
+                elif isinstance(owner, ListValue) and isinstance(key, int):
                     self.get_item(owner, key)
                     del owner.elements[key]
                 else:
@@ -350,20 +350,20 @@ class Machine:
 
     def _execute_functiondef(self, node: ast.FunctionDef, scope: Scope) -> None:
         decorators = tuple(_spell(one) for one in node.decorator_list)
-        scope.names[node.name] = Function(node, scope, decorators=decorators)
+        scope.names[node.name] = PythonFunction(node, scope, decorators=decorators)
 
     def _execute_asyncfunctiondef(self, node: ast.AsyncFunctionDef, scope: Scope) -> None:
-        scope.names[node.name] = Function(node, scope)
+        scope.names[node.name] = PythonFunction(node, scope)
 
     def _execute_classdef(self, node: ast.ClassDef, scope: Scope) -> None:
         members: dict[str, Any] = {}
         bases = tuple(self.evaluate(base, scope) for base in node.bases)
-        cls = Class(node, scope.module, bases, members)
+        cls = PythonClass(node, scope.module, bases, members)
         inner = Scope(scope.module, members, scope)
         for statement in node.body:
             self.execute_leniently(statement, inner)
         for value in members.values():
-            if isinstance(value, Function) and value.scope is inner:
+            if isinstance(value, PythonFunction) and value.scope is inner:
                 value.scope, value.owner = scope, cls
         scope.names[node.name] = cls
 
@@ -413,7 +413,7 @@ class Machine:
             if pattern.name:
                 scope.names[pattern.name] = subject
             return True
-        if kind == "MatchSequence" and isinstance(subject, Items):
+        if kind == "MatchSequence" and isinstance(subject, ListValue):
             found = self.run.fix_items(subject)
             return len(found) == len(pattern.patterns) and all(
                 self._matches(one, value, scope) for one, value in zip(pattern.patterns, found, strict=True)
@@ -436,7 +436,7 @@ class Machine:
                 at, rest = starred[0], len(target.elts) - starred[0] - 1
                 if len(found) < len(target.elts) - 1:
                     raise self.run.throw("ValueError", "not enough values to unpack")
-                middle = Items(found[at : len(found) - rest])
+                middle = ListValue(found[at : len(found) - rest])
                 found = [*found[:at], middle, *found[len(found) - rest :]]
             if len(found) != len(target.elts):
                 raise self.run.throw("ValueError", f"{len(target.elts)} values to unpack, {len(found)} given")
@@ -450,7 +450,7 @@ class Machine:
             raise NotModelledError("what is assigned to")
 
     def set_member(self, owner: Any, name: str, value: Any) -> None:
-        if isinstance(owner, Instance):
+        if isinstance(owner, PythonObject):
             setter = owner.cls.members.get(f"{name}.setter")
             if setter is not None:
                 raise NotModelledError(f"the setter of {name}")
@@ -465,7 +465,7 @@ class Machine:
             raise self.run.throw("AttributeError", f"None has no {name}")
         elif isinstance(owner, (Opaque, Handle, Outside)):
             self.run.not_modelled[f"{_describe(owner)}.{name} = …"] = None
-        elif isinstance(owner, Class):
+        elif isinstance(owner, PythonClass):
             owner.members[name] = value
         else:
             raise NotModelledError(f"a member {name} set")
@@ -478,7 +478,7 @@ class Machine:
             if not isinstance(key, _PLAIN):
                 raise NotModelledError("a key that is not known")
             owner[key] = value
-        elif isinstance(owner, Items):
+        elif isinstance(owner, ListValue):
             if owner.is_frozen:
                 raise self.run.throw("TypeError", "a tuple does not change")
             index = self._find_index(owner, key)
@@ -511,7 +511,7 @@ class Machine:
     # Expressions.
 
     def evaluate(self, node: ast.expr, scope: Scope) -> Any:
-        """The value of an expression. Raises ThrownError and NotModelledError."""
+        """The value of an expression. Raises PythonThrownError and NotModelledError."""
         step = getattr(self, f"_evaluate_{type(node).__name__.lower()}", None)
         if step is None:
             raise NotModelledError(f"expression {type(node).__name__}")
@@ -535,7 +535,7 @@ class Machine:
 
     def get_member(self, owner: Any, name: str) -> Any:
         """`owner.name`."""
-        if isinstance(owner, Instance):
+        if isinstance(owner, PythonObject):
             if name in owner.members:
                 value = owner.members[name]
                 if isinstance(value, Unsettled):
@@ -543,20 +543,20 @@ class Machine:
                     owner.members[name] = value
                 return value
             found = owner.cls.find(name)
-            if isinstance(found, Function):
+            if isinstance(found, PythonFunction):
                 if "property" in found.decorators or "cached_property" in found.decorators:
                     return self.call_function(found, [owner], {})
                 if "staticmethod" in found.decorators:
                     return found
                 if found.decorators and "classmethod" not in found.decorators:
                     raise NotModelledError(f"the decorator of {name}")
-                return Bound(found, owner.cls if "classmethod" in found.decorators else owner)
+                return BoundMethod(found, owner.cls if "classmethod" in found.decorators else owner)
             if found is not None or name in owner.cls.members:
                 return found
             if name == "__class__":
                 return owner.cls
             if owner.cls.list_outside():
-                return Method(owner, name)
+                return KnownMethod(owner, name)
             raise self.run.throw("AttributeError", name)
         if isinstance(owner, Record):
             value = self.messages.find_field(self.run, owner, name)
@@ -567,7 +567,7 @@ class Machine:
                 if not owner.is_known:
                     return Opaque(f"{owner.type}.{name}")
                 if name.startswith("_") or name in library.RECORD_METHODS or _is_time(owner):
-                    return Method(owner, name)
+                    return KnownMethod(owner, name)
                 raise self.run.throw("AttributeError", name)
             return value
         if isinstance(owner, Outside):
@@ -577,7 +577,7 @@ class Machine:
             if name in names:
                 return names[name]
             return self._find_module(f"{owner.name}.{name}") or Opaque(f"{owner.name}.{name}")
-        if isinstance(owner, Class):
+        if isinstance(owner, PythonClass):
             found = owner.find(name)
             if found is None and name not in owner.members:
                 return Outside(f"{owner.node.name}.{name}")
@@ -586,9 +586,11 @@ class Machine:
             raise self.run.throw("AttributeError", f"None has no {name}")
         if isinstance(owner, Opaque):
             return Opaque(f"{owner.name}.{name}")
-        if isinstance(owner, (Text, str, Items, dict, Handle, Moment, Whole, int, float, Real, bytes, set)):
+        if isinstance(
+            owner, (SymbolicText, str, ListValue, dict, Handle, TimeValue, Whole, int, float, Real, bytes, set)
+        ):
             return library.find_member(self, owner, name)
-        if isinstance(owner, ThrownError):
+        if isinstance(owner, PythonThrownError):
             return Opaque("an exception's member")
         raise NotModelledError(f"the member {name}")
 
@@ -618,29 +620,29 @@ class Machine:
         one: Scope | None = scope
         while one is not None and "self" not in one.names:
             one = one.outer
-        if one is None or not isinstance(one.names["self"], Instance):
+        if one is None or not isinstance(one.names["self"], PythonObject):
             raise NotModelledError("super()")
         return Handle("super", "super", one.names["self"])
 
     def call(self, called: Any, given: list[Any], named: dict[str, Any]) -> Any:
         """Calls something. What is not known gives a value that nothing is known of, and is noted."""
         self.run.count_step()
-        if isinstance(called, Function):
+        if isinstance(called, PythonFunction):
             return self.call_function(called, given, named)
-        if isinstance(called, Bound):
+        if isinstance(called, BoundMethod):
             return self.call_function(called.function, [called.owner, *given], named)
-        if isinstance(called, Class):
+        if isinstance(called, PythonClass):
             return self.make_instance(called, given, named)
         if isinstance(called, Outside):
             return library.call_outside(self, called.name, given, named)
-        if isinstance(called, Method):
+        if isinstance(called, KnownMethod):
             return library.call_method(self, called.owner, called.name, given, named)
         if isinstance(called, Handle):
             return library.call_handle(self, called, given)
         if isinstance(called, Opaque):
             self.run.not_modelled[f"{called.name}()"] = None
             return Opaque(f"{called.name}()")
-        if isinstance(called, Instance):
+        if isinstance(called, PythonObject):
             return self.call(self.get_member(called, "__call__"), given, named)
         if called is None:
             raise self.run.throw("TypeError", "None is not callable")
@@ -699,23 +701,23 @@ class Machine:
         """`left kind right`."""
         if isinstance(left, Opaque) or isinstance(right, Opaque):
             return Opaque(left.name if isinstance(left, Opaque) else right.name)
-        if kind is ast.Mod and isinstance(left, (str, Text)):
+        if kind is ast.Mod and isinstance(left, (str, SymbolicText)):
             return Opaque("formatted text")
-        if isinstance(left, Moment) or isinstance(right, Moment) or _is_time(left) or _is_time(right):
+        if isinstance(left, TimeValue) or isinstance(right, TimeValue) or _is_time(left) or _is_time(right):
             return library.calculate_moment(self, kind, left, right)
         if is_number(left) and is_number(right):
             if is_symbolic(left) or is_symbolic(right):
                 return operators.calculate(self.run, kind, left, right)
             return self._compute(kind, left, right)
-        if isinstance(left, (str, Text)) and isinstance(right, (str, Text)) and kind is ast.Add:
+        if isinstance(left, (str, SymbolicText)) and isinstance(right, (str, SymbolicText)) and kind is ast.Add:
             a, b = texts.list_characters(self.run, left), texts.list_characters(self.run, right)
             return texts.make_text((*a, *b))
-        if isinstance(left, Items) and isinstance(right, Items) and kind is ast.Add:
-            return Items([*self.run.fix_items(left), *self.run.fix_items(right)], is_frozen=left.is_frozen)
-        if isinstance(left, Items) and isinstance(right, int) and kind is ast.Mult:
+        if isinstance(left, ListValue) and isinstance(right, ListValue) and kind is ast.Add:
+            return ListValue([*self.run.fix_items(left), *self.run.fix_items(right)], is_frozen=left.is_frozen)
+        if isinstance(left, ListValue) and isinstance(right, int) and kind is ast.Mult:
             if right > 10_000:
                 raise NotModelledError("a long list")
-            return Items(self.run.fix_items(left) * right, is_frozen=left.is_frozen)
+            return ListValue(self.run.fix_items(left) * right, is_frozen=left.is_frozen)
         if isinstance(left, _PLAIN) and isinstance(right, _PLAIN):
             return self._compute(kind, left, right)
         if left is None or right is None:
@@ -763,7 +765,7 @@ class Machine:
             return Opaque(_describe(left if isinstance(left, Opaque) else right))
         if is_number(left) and is_number(right):
             return operators.compare(kind, left, right)
-        if isinstance(left, Moment) or isinstance(right, Moment) or _is_time(left) or _is_time(right):
+        if isinstance(left, TimeValue) or isinstance(right, TimeValue) or _is_time(left) or _is_time(right):
             return library.compare_moments(self, kind, left, right)
         if kind in (ast.Eq, ast.NotEq):
             same = self._are_equal(left, right)
@@ -772,14 +774,18 @@ class Machine:
             return make_truth(z3.Not(same.term)) if isinstance(same, Truth) else not same
         if isinstance(left, str) and isinstance(right, str):
             return operators.CONCRETE[kind](left, right)
-        if left is None or right is None or isinstance(left, (str, Text)) != isinstance(right, (str, Text)):
+        if (
+            left is None
+            or right is None
+            or isinstance(left, (str, SymbolicText)) != isinstance(right, (str, SymbolicText))
+        ):
             raise self.run.throw("TypeError", "values that have no order")
         raise NotModelledError("a comparison")
 
     def _are_equal(self, left: Any, right: Any) -> Any:
-        if isinstance(left, (str, Text)) and isinstance(right, (str, Text)):
+        if isinstance(left, (str, SymbolicText)) and isinstance(right, (str, SymbolicText)):
             return texts.are_equal(self.run, left, right)
-        if isinstance(left, Items) and isinstance(right, Items):
+        if isinstance(left, ListValue) and isinstance(right, ListValue):
             a, b = self.run.fix_items(left), self.run.fix_items(right)
             if len(a) != len(b):
                 return False
@@ -791,20 +797,20 @@ class Machine:
                 self.is_true(self.compare(ast.Eq, self.get_member(left, name), self.get_member(right, name)))
                 for name in names
             )
-        if isinstance(left, (Instance, Handle, Record, Items, dict)) or isinstance(
-            right, (Instance, Handle, Record, Items, dict)
+        if isinstance(left, (PythonObject, Handle, Record, ListValue, dict)) or isinstance(
+            right, (PythonObject, Handle, Record, ListValue, dict)
         ):
             return left is right or (isinstance(left, dict) and isinstance(right, dict) and left == right)
         if isinstance(left, _PLAIN) and isinstance(right, _PLAIN):
             return left == right
         if left is None or right is None:
             return False
-        if isinstance(left, (Outside, Class)) or isinstance(right, (Outside, Class)):
+        if isinstance(left, (Outside, PythonClass)) or isinstance(right, (Outside, PythonClass)):
             return left == right
         return type(left) is type(right) and left is right
 
     def _contains(self, holder: Any, value: Any) -> Any:
-        if isinstance(holder, (str, Text)) and isinstance(value, (str, Text)):
+        if isinstance(holder, (str, SymbolicText)) and isinstance(value, (str, SymbolicText)):
             if isinstance(holder, str) and isinstance(value, str):
                 return value in holder
             return texts.contains(self.run, holder, value)
@@ -812,7 +818,7 @@ class Machine:
             return Opaque(_describe(holder))
         if isinstance(holder, dict):
             keys: list[Any] = list(holder)
-        elif isinstance(holder, Items):
+        elif isinstance(holder, ListValue):
             keys = self.run.fix_items(holder)
         elif holder is None:
             raise self.run.throw("TypeError", "None has no elements")
@@ -837,9 +843,9 @@ class Machine:
             return self.run.decide(value)
         if isinstance(value, (Whole, Real)):
             return not self.run.decide(operators.is_zero(value))
-        if isinstance(value, Text):
+        if isinstance(value, SymbolicText):
             return value.size is None or not self.run.decide(operators.compare(ast.Eq, value.size, 0))
-        if isinstance(value, Items):
+        if isinstance(value, ListValue):
             if value.size is None:
                 return bool(value.elements)
             return not self.run.decide(operators.compare(ast.Eq, value.size, 0))
@@ -847,7 +853,7 @@ class Machine:
             return self.run.choose(value.name)
         if isinstance(value, (_PLAIN, dict)):
             return bool(value)
-        if isinstance(value, Instance) and (value.cls.find("__bool__") or value.cls.find("__len__")):
+        if isinstance(value, PythonObject) and (value.cls.find("__bool__") or value.cls.find("__len__")):
             raise NotModelledError("whether an object is true")
         return True
 
@@ -855,7 +861,7 @@ class Machine:
         return self.evaluate(node.body if self.is_true(self.evaluate(node.test, scope)) else node.orelse, scope)
 
     def _evaluate_lambda(self, node: ast.Lambda, scope: Scope) -> Any:
-        return Function(node, scope)
+        return PythonFunction(node, scope)
 
     def _evaluate_namedexpr(self, node: ast.NamedExpr, scope: Scope) -> Any:
         value = self.evaluate(node.value, scope)
@@ -863,13 +869,13 @@ class Machine:
         return value
 
     def _evaluate_tuple(self, node: ast.Tuple, scope: Scope) -> Any:
-        return Items(self._evaluate_all(node.elts, scope), is_frozen=True)
+        return ListValue(self._evaluate_all(node.elts, scope), is_frozen=True)
 
     def _evaluate_list(self, node: ast.List, scope: Scope) -> Any:
-        return Items(self._evaluate_all(node.elts, scope))
+        return ListValue(self._evaluate_all(node.elts, scope))
 
     def _evaluate_set(self, node: ast.Set, scope: Scope) -> Any:
-        return Items(self._evaluate_all(node.elts, scope))
+        return ListValue(self._evaluate_all(node.elts, scope))
 
     def _evaluate_all(self, nodes: Sequence[ast.expr], scope: Scope) -> list[Any]:
         found: list[Any] = []
@@ -891,7 +897,7 @@ class Machine:
                 continue
             name = self.evaluate(key, scope)
             if not isinstance(name, _PLAIN):
-                name = _freeze(name)
+                name = _make_key(name)
             found[name] = self.evaluate(value, scope)
         return found
 
@@ -902,33 +908,33 @@ class Machine:
                 None if one is None else self.evaluate(one, scope)
                 for one in (node.slice.lower, node.slice.upper, node.slice.step)
             ]
-            return self._slice(owner, parts)
+            return self._cut(owner, parts)
         key = self.evaluate(node.slice, scope)
         self.run.place = CodeLine(scope.module.path, node.lineno)
         return self.get_item(owner, key)
 
-    def _slice(self, owner: Any, parts: list[Any]) -> Any:
+    def _cut(self, owner: Any, parts: list[Any]) -> Any:
         if isinstance(owner, Opaque):
             return Opaque(owner.name)
         if any(is_symbolic(one) for one in parts):
             raise NotModelledError("a slice whose bounds are not known")
-        if isinstance(owner, (str, Text)):
-            return texts.slice_text(self.run, owner, *parts)
-        if isinstance(owner, Items):
-            return Items(self.run.fix_items(owner)[slice(*parts)], is_frozen=owner.is_frozen)
+        if isinstance(owner, (str, SymbolicText)):
+            return texts.cut_text(self.run, owner, *parts)
+        if isinstance(owner, ListValue):
+            return ListValue(self.run.fix_items(owner)[slice(*parts)], is_frozen=owner.is_frozen)
         if owner is None:
             raise self.run.throw("TypeError", "None has no elements")
         raise NotModelledError("a slice")
 
     def get_item(self, owner: Any, key: Any) -> Any:
         """`owner[key]`."""
-        if isinstance(owner, Items):
+        if isinstance(owner, ListValue):
             if isinstance(key, Opaque):
                 return Opaque(key.name)
             return owner.elements[self._find_index(owner, key)]
-        if isinstance(owner, (str, Text)):
+        if isinstance(owner, (str, SymbolicText)):
             characters = texts.list_characters(self.run, owner)
-            index = self._find_index(Items(list(characters)), key)
+            index = self._find_index(ListValue(list(characters)), key)
             return texts.make_text((characters[index],))
         if isinstance(owner, dict):
             return self._get_from_dictionary(owner, key)
@@ -938,7 +944,7 @@ class Machine:
             raise self.run.throw("TypeError", "None has no elements")
         if isinstance(owner, Handle):
             return Opaque(owner.name)
-        if isinstance(owner, Instance) and isinstance(owner.cls.find("__getitem__"), Function):
+        if isinstance(owner, PythonObject) and isinstance(owner.cls.find("__getitem__"), PythonFunction):
             return self.call_function(owner.cls.find("__getitem__"), [owner, key], {})
         raise NotModelledError("an element")
 
@@ -950,12 +956,12 @@ class Machine:
         if isinstance(key, Opaque):
             return Opaque(key.name)
         for one, value in owner.items():
-            plain = Items(list(one), is_frozen=True) if isinstance(one, tuple) else one
+            plain = ListValue(list(one), is_frozen=True) if isinstance(one, tuple) else one
             if self.is_true(self.compare(ast.Eq, key, plain)):
                 return value
         raise self.run.throw("KeyError")
 
-    def _find_index(self, owner: Items, key: Any) -> int:
+    def _find_index(self, owner: ListValue, key: Any) -> int:
         """The index of an element, decided on. Raises what Python raises out of range."""
         if not isinstance(key, (int, Whole, Truth)):
             raise self.run.throw("TypeError", "an index that is no integer")
@@ -975,11 +981,11 @@ class Machine:
 
     def iterate(self, value: Any) -> list[Any]:
         """The elements that a loop over a value goes through."""
-        if isinstance(value, Items):
+        if isinstance(value, ListValue):
             return list(self.run.fix_items(value))
         if isinstance(value, dict):
             return list(value)
-        if isinstance(value, (str, Text)):
+        if isinstance(value, (str, SymbolicText)):
             return [texts.make_text((one,)) for one in texts.list_characters(self.run, value)]
         if isinstance(value, range):
             return list(value)
@@ -990,21 +996,27 @@ class Machine:
         raise NotModelledError(f"a loop over {_describe(value)}")
 
     def _evaluate_listcomp(self, node: ast.ListComp, scope: Scope) -> Any:
-        return Items(self._comprehend(node.generators, scope, lambda inner: self.evaluate(node.elt, inner)))
+        return ListValue(
+            self._build_comprehension(node.generators, scope, lambda inner: self.evaluate(node.elt, inner))
+        )
 
     def _evaluate_generatorexp(self, node: ast.GeneratorExp, scope: Scope) -> Any:
-        return Items(self._comprehend(node.generators, scope, lambda inner: self.evaluate(node.elt, inner)))
+        return ListValue(
+            self._build_comprehension(node.generators, scope, lambda inner: self.evaluate(node.elt, inner))
+        )
 
     def _evaluate_setcomp(self, node: ast.SetComp, scope: Scope) -> Any:
-        return Items(self._comprehend(node.generators, scope, lambda inner: self.evaluate(node.elt, inner)))
+        return ListValue(
+            self._build_comprehension(node.generators, scope, lambda inner: self.evaluate(node.elt, inner))
+        )
 
     def _evaluate_dictcomp(self, node: ast.DictComp, scope: Scope) -> Any:
-        pairs = self._comprehend(
+        pairs = self._build_comprehension(
             node.generators, scope, lambda inner: (self.evaluate(node.key, inner), self.evaluate(node.value, inner))
         )
-        return {(key if isinstance(key, _PLAIN) else _freeze(key)): value for key, value in pairs}
+        return {(key if isinstance(key, _PLAIN) else _make_key(key)): value for key, value in pairs}
 
-    def _comprehend(self, generators: Sequence[ast.comprehension], scope: Scope, make: Any) -> list[Any]:
+    def _build_comprehension(self, generators: Sequence[ast.comprehension], scope: Scope, make: Any) -> list[Any]:
         found: list[Any] = []
 
         def go(level: int, inner: Scope) -> None:
@@ -1035,9 +1047,9 @@ class Machine:
         raise NotModelledError("a starred expression")
 
 
-def _freeze(value: Any) -> Any:
+def _make_key(value: Any) -> Any:
     """A key of a dictionary: tuples of plain values."""
-    if isinstance(value, Items) and value.size is None and all(isinstance(one, _PLAIN) for one in value.elements):
+    if isinstance(value, ListValue) and value.size is None and all(isinstance(one, _PLAIN) for one in value.elements):
         return tuple(value.elements)
     raise NotModelledError("a key that is not known")
 

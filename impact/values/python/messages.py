@@ -8,8 +8,8 @@ from typing import Any
 
 from ...facts.interface import PRIMITIVES, Field, Section, make_full_name
 from ..outcomes import InputKind
-from .run import Run
-from .terms import Items, Real, Record, Text, Truth, Whole
+from .run import PythonRun
+from .terms import ListValue, Real, Record, SymbolicText, Truth, Whole
 
 FindSection = Callable[[str], Section | None]
 """The fields of `package/Name`, None where they are not known."""
@@ -37,7 +37,7 @@ class Messages:
         section = self._find_section(type_)
         return {one.name: _parse_constant(one.type, one.value) for one in section.constants} if section else {}
 
-    def make_input(self, run: Run, type_: str, path: str) -> Record:
+    def make_input(self, run: PythonRun, type_: str, path: str) -> Record:
         """A symbolic message of a type; its fields are made when they are looked at."""
         record = Record(type_, is_known=self.find_fields(type_) is not None)
         record.fields["~path"] = path
@@ -51,7 +51,7 @@ class Messages:
         """Names of the fields of a type, in order; none where it is not known."""
         return [one.name for one in self.find_fields(type_) or ()]
 
-    def find_field(self, run: Run, record: Record, name: str) -> Any:
+    def find_field(self, run: PythonRun, record: Record, name: str) -> Any:
         """A field of a message, made when it is first asked for; None where the type has none."""
         if name in record.fields:
             return record.fields[name]
@@ -85,19 +85,19 @@ class Messages:
         section = self._find_section(type_)
         return section.fields if section is not None else None
 
-    def _make_symbolic(self, run: Run, field: Field, owner: str, path: str) -> Any:
+    def _make_symbolic(self, run: PythonRun, field: Field, owner: str, path: str) -> Any:
         if not field.array:
             return self._make_one(run, field.type, owner, path)
         fixed = re.fullmatch(r"\[(\d+)\]", field.array)
         bounded = re.fullmatch(r"\[<=(\d+)\]", field.array)
         if fixed:
             count = int(fixed.group(1))
-            return Items([self._make_one(run, field.type, owner, f"{path}[{index}]") for index in range(count)])
+            return ListValue([self._make_one(run, field.type, owner, f"{path}[{index}]") for index in range(count)])
         most = min(run.bounds.array, int(bounded.group(1))) if bounded else run.bounds.array
         elements = [self._make_one(run, field.type, owner, f"{path}[{index}]") for index in range(most)]
-        return Items(elements, run.get_size(path, most))
+        return ListValue(elements, run.get_size(path, most))
 
-    def _make_one(self, run: Run, type_: str, owner: str, path: str) -> Any:
+    def _make_one(self, run: PythonRun, type_: str, owner: str, path: str) -> Any:
         plain = type_.partition("<")[0]
         if plain in BITS:
             return run.get_whole(path, *BITS[plain])
@@ -113,7 +113,7 @@ class Messages:
         if field.array:
             fixed = re.fullmatch(r"\[(\d+)\]", field.array)
             count = int(fixed.group(1)) if fixed else 0
-            return Items([self._make_default_one(field, owner) for _ in range(count)])
+            return ListValue([self._make_default_one(field, owner) for _ in range(count)])
         if field.default and field.type in PRIMITIVES:
             return _parse_constant(field.type, field.default)
         return self._make_default_one(field, owner)
@@ -131,7 +131,7 @@ class Messages:
         return self.make_empty(make_full_name(plain, owner.partition("/")[0]))
 
     def flatten(
-        self, run: Run, value: Any, path: str, found: dict[str, Any], kinds: dict[str, Any], deep: int = 0
+        self, run: PythonRun, value: Any, path: str, found: dict[str, Any], kinds: dict[str, Any], deep: int = 0
     ) -> None:
         """Lists what a message that is published holds: leaf paths with bit vectors or numbers. What is not known is
         left out."""
@@ -146,15 +146,15 @@ class Messages:
                     run, self.find_field(run, value, name), f"{path}.{name}" if path else name, found, kinds, deep + 1
                 )
             return
-        if isinstance(value, Items):
+        if isinstance(value, ListValue):
             size = value.size if value.size is not None else len(value.elements)
             _put(found, kinds, f"{path}.size", size, InputKind.SIZE)
             for index, one in enumerate(value.elements[:16]):
                 self.flatten(run, one, f"{path}[{index}]", found, kinds, deep + 1)
             return
-        if isinstance(value, (str, Text)):
+        if isinstance(value, (str, SymbolicText)):
             characters = tuple(map(ord, value)) if isinstance(value, str) else value.characters
-            size = value.size if isinstance(value, Text) and value.size is not None else len(characters)
+            size = value.size if isinstance(value, SymbolicText) and value.size is not None else len(characters)
             _put(found, kinds, f"{path}.size", size, InputKind.SIZE)
             for index, one in enumerate(characters):
                 found[f"{path}[{index}]"], kinds[f"{path}[{index}]"] = one, (InputKind.CHARACTER, 8, False)
@@ -172,7 +172,7 @@ def _put(found: dict[str, Any], kinds: dict[str, Any], path: str, value: Any, ki
 
     import z3
 
-    from .terms import extend, to_whole
+    from .terms import convert_to_whole, extend
 
     if kind is InputKind.FLOAT64:
         term = (
@@ -180,7 +180,7 @@ def _put(found: dict[str, Any], kinds: dict[str, Any], path: str, value: Any, ki
         )
         found[path], kinds[path] = term, (kind, 64, True)
         return
-    whole = to_whole(value)
+    whole = convert_to_whole(value)
     bits = 8 if kind is InputKind.BOOLEAN else 64
     if isinstance(whole, Whole):
         size = whole.term.size()

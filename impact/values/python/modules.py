@@ -45,12 +45,12 @@ class Scope:
 
 
 @dataclass(slots=True)
-class Function:
+class PythonFunction:
     """A function or lambda; scope: in which it was made."""
 
     node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
     scope: Scope
-    owner: Class | None = None
+    owner: PythonClass | None = None
     decorators: tuple[str, ...] = ()
 
     @property
@@ -60,8 +60,8 @@ class Function:
 
 
 @dataclass(slots=True)
-class Class:
-    """A class of the workspace. bases: Class, Outside or others."""
+class PythonClass:
+    """A class of the workspace. bases: PythonClass, Outside or others."""
 
     node: ast.ClassDef
     module: ModuleCode
@@ -75,11 +75,11 @@ class Class:
                 return one.members[name]
         return None
 
-    def list_order(self) -> list[Class]:
+    def list_order(self) -> list[PythonClass]:
         """The class and its bases of the workspace, nearest first."""
-        found: list[Class] = [self]
+        found: list[PythonClass] = [self]
         for base in self.bases:
-            if isinstance(base, Class):
+            if isinstance(base, PythonClass):
                 found.extend(one for one in base.list_order() if one not in found)
         return found
 
@@ -89,10 +89,10 @@ class Class:
 
 
 @dataclass(slots=True)
-class Instance:
+class PythonObject:
     """An object of a class of the workspace. written: members that were set since watching began."""
 
-    cls: Class
+    cls: PythonClass
     members: dict[str, Any] = field(default_factory=dict)
 
 
@@ -104,10 +104,10 @@ class Unsettled:
 
 
 @dataclass(slots=True)
-class Bound:
+class BoundMethod:
     """A method with its object."""
 
-    function: Function
+    function: PythonFunction
     owner: Any
 
 
@@ -122,7 +122,7 @@ class Handle:
 
 
 @dataclass(frozen=True, slots=True)
-class Method:
+class KnownMethod:
     """A method of a value that the executor itself knows: of a text, a list, a handle, a message."""
 
     owner: Any
@@ -130,7 +130,7 @@ class Method:
 
 
 @dataclass(slots=True)
-class Moment:
+class TimeValue:
     """A time or duration in nanoseconds: an int or a Whole. is_span: a duration."""
 
     nanoseconds: Any

@@ -18,9 +18,11 @@ from .terms import (
     NEAREST,
     NotModelledError,
     Real,
-    Span,
+    RealSpan,
     Truth,
     Whole,
+    convert_to_real,
+    convert_to_whole,
     count_bits,
     extend,
     get_range,
@@ -29,8 +31,6 @@ from .terms import (
     make_real,
     make_truth,
     make_whole,
-    to_real,
-    to_whole,
 )  # fmt: skip
 
 CONCRETE: dict[type[ast.AST], Callable[[Any, Any], Any]] = {
@@ -59,12 +59,12 @@ class Decides(Protocol):
 
 def calculate(run: Decides, kind: type[ast.operator], left: Any, right: Any) -> Any:
     """A binary operator on numbers, at least one of them symbolic. Raises NotModelledError."""
-    left, right = to_whole(left), to_whole(right)
+    left, right = convert_to_whole(left), convert_to_whole(right)
     if is_whole(left) and is_whole(right) and kind is not ast.Div:
         return _calculate_whole(run, kind, left, right)
     if kind in (ast.Div, ast.FloorDiv, ast.Mod) and run.decide(compare(ast.Eq, right, 0)):
         raise run.throw("ZeroDivisionError")
-    a, b = to_real(left), to_real(right)
+    a, b = convert_to_real(left), convert_to_real(right)
     span = _combine(kind, left, right)
     if kind is ast.Add:
         return make_real(z3.fpAdd(NEAREST, a, b), span)
@@ -81,7 +81,7 @@ def calculate(run: Decides, kind: type[ast.operator], left: Any, right: Any) -> 
     raise NotModelledError(f"operator {kind.__name__} of floats")
 
 
-def _combine(kind: type[ast.operator], left: Any, right: Any) -> Span:
+def _combine(kind: type[ast.operator], left: Any, right: Any) -> RealSpan:
     """Between which a result is, by the ends of both sides, which Python rounds as the operator does. A divisor that is
     an integer was asked whether it is 0 before."""
     one, other = get_span(left), get_span(right)
@@ -90,13 +90,13 @@ def _combine(kind: type[ast.operator], left: Any, right: Any) -> Span:
     if kind is ast.Div:
         if isinstance(right, (Whole, int)):
             most = max(abs(one.low), abs(one.high))
-            return Span(-most, most, True)
+            return RealSpan(-most, most, True)
         if other.low <= 0.0 <= other.high:
             return ANY
     operation = CONCRETE[kind]
     pairs = ((one.low, other.low), (one.low, other.high), (one.high, other.low), (one.high, other.high))
     ends = [operation(x, y) for x, y in pairs]
-    return Span(min(ends), max(ends), all(map(math.isfinite, ends))) if not any(map(math.isnan, ends)) else ANY
+    return RealSpan(min(ends), max(ends), all(map(math.isfinite, ends))) if not any(map(math.isnan, ends)) else ANY
 
 
 def _calculate_whole(run: Decides, kind: type[ast.operator], left: Whole | int, right: Whole | int) -> Any:
@@ -148,8 +148,8 @@ def _calculate_whole(run: Decides, kind: type[ast.operator], left: Whole | int, 
 
 def compare(kind: type[ast.cmpop], one: Any, other: Any) -> Truth | bool:
     """A comparison of numbers."""
-    left: Any = to_whole(one)
-    right: Any = to_whole(other)
+    left: Any = convert_to_whole(one)
+    right: Any = convert_to_whole(other)
     if not isinstance(left, (Whole, Real)) and not isinstance(right, (Whole, Real)):
         return bool(CONCRETE[kind](left, right))
     if is_whole(left) and is_whole(right):
@@ -168,7 +168,7 @@ def compare(kind: type[ast.cmpop], one: Any, other: Any) -> Truth | bool:
     if easy is not None:
         return easy
     # A float beside an integer: as numbers; exact for what a float holds.
-    x, y = narrow(left, right) or (to_real(left), to_real(right))
+    x, y = narrow(left, right) or (convert_to_real(left), convert_to_real(right))
     if kind is ast.NotEq:
         return make_truth(z3.Not(z3.fpEQ(x, y)))
     terms = {ast.Eq: z3.fpEQ, ast.Lt: z3.fpLT, ast.LtE: z3.fpLEQ, ast.Gt: z3.fpGT, ast.GtE: z3.fpGEQ}
@@ -228,7 +228,7 @@ def _is_single(number: float) -> bool:
         return False
 
 
-def _compare_spans(kind: type[ast.cmpop], one: Span, other: Span) -> bool | None:
+def _compare_spans(kind: type[ast.cmpop], one: RealSpan, other: RealSpan) -> bool | None:
     """What a comparison of floats gives for sure, by what is known of both."""
     apart = one.high < other.low or other.high < one.low
     if kind in (ast.Eq, ast.NotEq):
@@ -257,10 +257,10 @@ def _compare_ranges(kind: type[ast.cmpop], a: int, b: int, c: int, d: int) -> bo
 
 def negate(value: Any) -> Any:
     """`-value` of a symbolic number."""
-    value = to_whole(value)
+    value = convert_to_whole(value)
     if isinstance(value, Real):
         span = value.span
-        return make_real(z3.fpNeg(value.term), Span(-span.high, -span.low, span.is_number))
+        return make_real(z3.fpNeg(value.term), RealSpan(-span.high, -span.low, span.is_number))
     low, high = get_range(value)
     return make_whole(
         -extend(value, count_bits(-high, -low) if low > -high else count_bits(low - 1, -low)), -high, -low
@@ -269,18 +269,18 @@ def negate(value: Any) -> Any:
 
 def find_magnitude(value: Any) -> Any:
     """`abs(value)` of a symbolic number."""
-    value = to_whole(value)
+    value = convert_to_whole(value)
     if isinstance(value, Real):
         span = value.span
         most = max(abs(span.low), abs(span.high))
-        return make_real(z3.fpAbs(value.term), Span(0.0, most, span.is_number))
+        return make_real(z3.fpAbs(value.term), RealSpan(0.0, most, span.is_number))
     low, high = get_range(value)
     most = max(abs(low), abs(high))
     term = extend(value, count_bits(-most, most))
     return make_whole(z3.If(term < 0, -term, term), 0, most)
 
 
-def truncate(run: Decides, value: Real, rounding: Any = None) -> Any:
+def convert_to_integer(run: Decides, value: Real, rounding: Any = None) -> Any:
     """`int(value)` of a float; rounding: another of z3's for floor, ceil and round. NaN and infinity raise what Python
     raises."""
     span = value.span

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ....edges.documents import DocumentError, load_json
 from ...facts.interface import Field, make_full_name
 from ..harness.replay import Replayed
 from ..outcomes import NOWHERE, CodeLine, CrashKind, InputKind, Observable, Reaction, Witness
@@ -57,15 +58,15 @@ def replay_witness(
     if ended.is_late:
         return Replayed(Reaction.CRASH, CrashKind.ENDLESS, is_isolated=ended.is_offline)
     try:
-        found = json.loads(ended.output)
-    except ValueError:
+        found = load_json(ended.output)
+    except DocumentError:
         reason = (ended.errors.strip().splitlines() or [f"it ended with status {ended.status}"])[-1]
         return Replayed(Reaction.UNKNOWN, reason=reason[:300], begun=False, is_isolated=ended.is_offline)
     return _adjust(witness, _read(found, place.root)._replace(is_isolated=ended.is_offline))
 
 
 def _read(found: dict[str, Any], root: Path) -> Replayed:
-    line = CodeLine(_relate(found["line"][0], root), found["line"][1])
+    line = CodeLine(_shorten_path(found["line"][0], root), found["line"][1])
     if found["end"] == "not loaded":
         return Replayed(Reaction.UNKNOWN, place=line, reason=found["exception"], begun=False)
     events = found.get("events", ())
@@ -91,7 +92,7 @@ def _adjust(witness: Witness, seen: Replayed) -> Replayed:
     return seen
 
 
-def _relate(path: str, root: Path) -> str:
+def _shorten_path(path: str, root: Path) -> str:
     try:
         return Path(path).relative_to(root.resolve()).as_posix() if path else ""
     except ValueError:

@@ -14,10 +14,10 @@ from .terms import (
     FLOAT32,
     FLOAT64,
     NEAREST,
-    Items,
+    ListValue,
     NotModelledError,
     Real,
-    Text,
+    SymbolicText,
     Truth,
     Whole,
     count_bits,
@@ -29,7 +29,7 @@ GAVE_UP = "the solver gave up on a condition, so both ways are followed"
 """Stands among what is assumed."""
 
 
-class ThrownError(Exception):
+class PythonThrownError(Exception):
     """An exception of the program. name: of its class; bases: names of the classes that catch it as well; value: the
     object that `as` binds."""
 
@@ -48,7 +48,7 @@ class ThrownError(Exception):
         )
 
 
-class Run:
+class PythonRun:
     """A way that begins with some decisions and goes on by itself. inputs: those of all ways, by path; open_ways: the
     decisions of ways that branch off this one."""
 
@@ -90,13 +90,13 @@ class Run:
             self._trace.append(chosen)
             self.assume(condition.term if chosen else z3.Not(condition.term))
             return chosen
-        chosen = self._pick(condition.term)
+        chosen = self._choose_way(condition.term)
         self._taken += 1
         self._trace.append(chosen)
         self.assume(condition.term if chosen else z3.Not(condition.term))
         return chosen
 
-    def _pick(self, term: z3.BoolRef) -> bool:
+    def _choose_way(self, term: z3.BoolRef) -> bool:
         """Which way to go on; the other is opened where it can be gone too. The last model saves a question."""
         negated = z3.Not(term)
         known = self._model.eval(term, model_completion=True) if self._model is not None else None
@@ -155,9 +155,9 @@ class Run:
         if not self.steps & 63 and time.monotonic() > self.deadline:
             raise NotModelledError("the time limit")
 
-    def throw(self, name: str, detail: str = "") -> ThrownError:
+    def throw(self, name: str, detail: str = "") -> PythonThrownError:
         """The exception of Python of a name at the present place, to be raised."""
-        return ThrownError(name, detail, self.place)
+        return PythonThrownError(name, detail, self.place)
 
     # Inputs.
 
@@ -199,7 +199,7 @@ class Run:
         bits = count_bits(0, most)
         return Whole(z3.Extract(bits - 1, 0, term), 0, most)
 
-    def get_text(self, path: str) -> Text:
+    def get_text(self, path: str) -> SymbolicText:
         """The input of a path, a text of ASCII."""
         size = self.get_size(path, self.bounds.text)
         characters: list[z3.BitVecRef | int] = []
@@ -208,7 +208,7 @@ class Run:
             term = self._get_input(name, InputKind.CHARACTER, 8, False)
             self._assume_once(name, z3.ULE(term, 127))
             characters.append(term)
-        return Text(tuple(characters), size)
+        return SymbolicText(tuple(characters), size)
 
     def _assume_once(self, name: str, term: z3.BoolRef) -> None:
         if name not in self._fresh:
@@ -222,13 +222,13 @@ class Run:
 
     # Sizes.
 
-    def fix_text(self, text: Text) -> tuple[z3.BitVecRef | int, ...]:
+    def fix_text(self, text: SymbolicText) -> tuple[z3.BitVecRef | int, ...]:
         """The characters of a text whose size is decided on."""
         if text.size is None:
             return text.characters
         return text.characters[: self.fix_size(text.size)]
 
-    def fix_items(self, items: Items) -> list[Any]:
+    def fix_items(self, items: ListValue) -> list[Any]:
         """The elements of a list whose size is decided on; from then on it is known."""
         if items.size is not None:
             count = self.fix_size(items.size)

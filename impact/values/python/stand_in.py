@@ -54,7 +54,7 @@ def decode(value):
     return value
 
 
-class Message:
+class _Message:
     """Of any type; fields by its definition."""
 
     _type = ""
@@ -78,7 +78,7 @@ class Message:
         object.__setattr__(self, name, value)
 
     def __eq__(self, other):
-        return isinstance(other, Message) and self._type == other._type and self.__dict__ == other.__dict__
+        return isinstance(other, _Message) and self._type == other._type and self.__dict__ == other.__dict__
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -94,7 +94,7 @@ def find_class(type_):
     if type_ not in CLASSES:
         definition = TASK["definitions"].get(type_) or {"constants": {}}
         members = {name: decode(value) for name, value in definition["constants"].items()}
-        CLASSES[type_] = type(type_.rpartition("/")[2], (Message,), {"_type": type_, "__slots__": (), **members})
+        CLASSES[type_] = type(type_.rpartition("/")[2], (_Message,), {"_type": type_, "__slots__": (), **members})
     return CLASSES[type_]
 
 
@@ -105,7 +105,7 @@ def make_message(type_, fields):
     return message
 
 
-class Stub:
+class _Stub:
     """Anything of ROS: its members and calls are of this kind again; a few of them are observed."""
 
     def __init__(self, name="", kind=""):
@@ -114,7 +114,7 @@ class Stub:
     def __getattr__(self, name):
         if name.startswith("__") and name.endswith("__"):
             raise AttributeError(name)
-        return Stub(f"{self._name}.{name}")
+        return _Stub(f"{self._name}.{name}")
 
     def __call__(self, *given, **named):
         return call(self._name, given, named)
@@ -129,7 +129,7 @@ class Stub:
         return iter(())
 
     def __getitem__(self, key):
-        return Stub(f"{self._name}[]")
+        return _Stub(f"{self._name}[]")
 
     def __setitem__(self, key, value):
         pass
@@ -141,7 +141,7 @@ class Stub:
         return True
 
     def __mro_entries__(self, bases):
-        return (Node,)
+        return (_Node,)
 
 
 _LEVELS = ("loginfo", "logwarn", "logerr", "logdebug", "logfatal")
@@ -154,9 +154,9 @@ def call(name, given, named):
         note("log", last)
         return None
     if last == "Publisher":
-        return Publisher()
+        return _Publisher()
     if last == "ServiceProxy":
-        return Client()
+        return _Client()
     if last == "get_param" and given:
         default = given[1] if len(given) > 1 else named.get("default")
         return answer("~param." + str(given[0]).lstrip("~/"), default)
@@ -172,8 +172,8 @@ def call(name, given, named):
         "rospy.Duration.from_sec",
     ):
         if last in ("now", "get_rostime"):
-            return Moment(count_nanoseconds())
-        return Moment(int(given[0] * 1e9) + (int(given[1]) if len(given) > 1 else 0) if given else 0)
+            return _Moment(count_nanoseconds())
+        return _Moment(int(given[0] * 1e9) + (int(given[1]) if len(given) > 1 else 0) if given else 0)
     if last == "sendTransform":
         note("transform")
         return None
@@ -184,10 +184,10 @@ def call(name, given, named):
         return None
     if last == "is_shutdown":
         return False
-    return Stub(name + "()")
+    return _Stub(name + "()")
 
 
-class Moment:
+class _Moment:
     def __init__(self, nanoseconds):
         self.nanoseconds = nanoseconds
 
@@ -201,10 +201,10 @@ class Moment:
         return self.nanoseconds
 
     def __sub__(self, other):
-        return Moment(self.nanoseconds - _count(other))
+        return _Moment(self.nanoseconds - _count(other))
 
     def __add__(self, other):
-        return Moment(self.nanoseconds + _count(other))
+        return _Moment(self.nanoseconds + _count(other))
 
     def __lt__(self, other):
         return self.nanoseconds < _count(other)
@@ -237,7 +237,7 @@ def _count(other):
     return numbers[0] * 10**9 + numbers[1]
 
 
-class Publisher:
+class _Publisher:
     def publish(self, *given, **named):
         note("publish", find_name(self))
 
@@ -250,17 +250,17 @@ class Publisher:
         pass
 
 
-class Client:
+class _Client:
     def __call__(self, *given, **named):
         note("service", find_name(self))
-        return Stub("response")
+        return _Stub("response")
 
     call = call_async = __call__
 
     def __getattr__(self, name):
         if name.startswith("__"):
             raise AttributeError(name)
-        return Stub(name)
+        return _Stub(name)
 
 
 OWNER = []
@@ -275,7 +275,7 @@ def find_name(value):
     return ""
 
 
-class Node:
+class _Node:
     """A base class that is not there."""
 
     def __init__(self, *given, **named):
@@ -285,33 +285,33 @@ class Node:
         if name.startswith("__"):
             raise AttributeError(name)
         if name == "create_publisher":
-            return lambda *given, **named: Publisher()
+            return lambda *given, **named: _Publisher()
         if name == "create_client":
-            return lambda *given, **named: Client()
+            return lambda *given, **named: _Client()
         if name == "declare_parameter":
-            return lambda key, value=None, *more, **named: Parameter(key, value)
+            return lambda key, value=None, *more, **named: _Parameter(key, value)
         if name in ("get_parameter", "get_parameter_or"):
-            return lambda key, *more: Parameter(key, None)
+            return lambda key, *more: _Parameter(key, None)
         if name == "get_clock":
-            return lambda: Clock()
+            return lambda: _Clock()
         if name == "get_logger":
-            return lambda *given: Stub("logger")
+            return lambda *given: _Stub("logger")
         if name in ("set_parameters", "destroy_node"):
             return lambda *given, **named: note("parameter" if name == "set_parameters" else "shutdown", name)
         if name.startswith(("create_", "get_", "add_", "destroy_", "declare_", "count_", "has_", "resolve_", "wait_")):
-            return Stub(name)
+            return _Stub(name)
         raise AttributeError(f"{type(self).__name__} has no {name}")
 
 
-class Clock:
+class _Clock:
     def now(self):
-        return Moment(count_nanoseconds())
+        return _Moment(count_nanoseconds())
 
 
 PARAMETERS = {}
 
 
-class Parameter:
+class _Parameter:
     def __init__(self, key, default):
         if default is not None:
             PARAMETERS[key] = answer("~param." + key, default)
@@ -326,7 +326,7 @@ class Parameter:
         raise AttributeError(name)
 
 
-class StandIn(types.ModuleType):
+class _StandIn(types.ModuleType):
     """A module that is not there."""
 
     def __getattr__(self, name):
@@ -338,23 +338,23 @@ class StandIn(types.ModuleType):
         if name.endswith(("Exception", "Error", "Interrupt")):
             made = type(name, (Exception,), {})
         elif name[:1].isupper() and self.__name__.startswith("rclpy") and name.endswith("Node"):
-            made = Node
+            made = _Node
         elif parts[0] == "rospy" and name in ("Header",):
             made = find_class("std_msgs/Header")
         else:
-            made = Stub(f"{self.__name__}.{name}")
+            made = _Stub(f"{self.__name__}.{name}")
         setattr(self, name, made)
         return made
 
 
-class Finder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
+class _Finder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
     """Comes last: what nobody else finds."""
 
     def find_spec(self, name, path=None, target=None):
         return importlib.machinery.ModuleSpec(name, self, is_package=True)
 
     def create_module(self, spec):
-        module = StandIn(spec.name)
+        module = _StandIn(spec.name)
         module.__path__ = []
         return module
 
@@ -393,7 +393,7 @@ def main():
     sys.stdout = sys.stderr
     builtins.print = lambda *given, **named: note("log", "print")
     sys.path[:0] = TASK["folders"]
-    sys.meta_path.append(Finder())
+    sys.meta_path.append(_Finder())
     try:
         module = load_module(TASK["module"], TASK["file"])
         owner = module
@@ -422,7 +422,7 @@ def main():
         function = getattr(owner, parts[-1])
     if TASK["has_message"]:
         given.append(decode(TASK["message"]))
-    given.extend(Stub(f"argument {index}") for index in range(TASK["others"]))
+    given.extend(_Stub(f"argument {index}") for index in range(TASK["others"]))
     EVENTS.clear()
     before = dict(vars(OWNER[0])) if OWNER else {}
     sizes = {name: repr(value) for name, value in before.items() if isinstance(value, (list, dict, set))}

@@ -30,7 +30,7 @@ class Whole:
     high: int
 
 
-class Span(NamedTuple):
+class RealSpan(NamedTuple):
     """Between which a float is; is_number: whether it is none of NaN."""
 
     low: float = -math.inf
@@ -43,7 +43,7 @@ class Span(NamedTuple):
         return self.is_number and -math.inf < self.low and self.high < math.inf
 
 
-ANY = Span()
+ANY = RealSpan()
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ class Real:
     one of these made wider, which compares faster."""
 
     term: z3.FPRef
-    span: Span = ANY
+    span: RealSpan = ANY
     single: z3.FPRef | None = None
 
 
@@ -64,7 +64,7 @@ class Truth:
 
 
 @dataclass(frozen=True, slots=True)
-class Text:
+class SymbolicText:
     """A str of ASCII. characters: bit vectors of 8 bits or numbers, as many as there may be at most; size: a Whole, or
     None where all of them are there."""
 
@@ -73,7 +73,7 @@ class Text:
 
 
 @dataclass(slots=True)
-class Items:
+class ListValue:
     """A list or tuple. elements: as many as there may be at most; size: None where all of them are there. Its content
     changes as a list's does."""
 
@@ -128,7 +128,7 @@ def make_truth(term: z3.BoolRef) -> Truth | bool:
     return False if z3.is_false(value) else Truth(value)
 
 
-def make_real(term: z3.FPRef, span: Span = ANY) -> Real | float:
+def make_real(term: z3.FPRef, span: RealSpan = ANY) -> Real | float:
     """A float of a term; a float of Python where it is always the same."""
     value = z3.simplify(term)
     if isinstance(value, z3.FPNumRef):
@@ -154,7 +154,7 @@ def get_range(value: Any) -> tuple[int, int]:
     return (value.low, value.high) if isinstance(value, Whole) else (int(value), int(value))
 
 
-def to_real(value: Any) -> z3.FPRef:
+def convert_to_real(value: Any) -> z3.FPRef:
     """The float of a number."""
     if isinstance(value, Real):
         return value.term
@@ -165,7 +165,7 @@ def to_real(value: Any) -> z3.FPRef:
     return z3.FPVal(float(value), FLOAT64)
 
 
-def to_whole(value: Any) -> Any:
+def convert_to_whole(value: Any) -> Any:
     """A truth as a number; others as they are."""
     if isinstance(value, Truth):
         return Whole(z3.If(value.term, z3.BitVecVal(1, 8), z3.BitVecVal(0, 8)), 0, 1)
@@ -174,9 +174,9 @@ def to_whole(value: Any) -> Any:
 
 def is_symbolic(value: Any) -> bool:
     """Whether a value, or a part of it, is not the same on every path."""
-    if isinstance(value, Items):
+    if isinstance(value, ListValue):
         return value.size is not None or any(is_symbolic(one) for one in value.elements)
-    return isinstance(value, (Whole, Real, Truth, Text, Opaque))
+    return isinstance(value, (Whole, Real, Truth, SymbolicText, Opaque))
 
 
 def is_number(value: Any) -> bool:
@@ -189,12 +189,12 @@ def is_whole(value: Any) -> bool:
     return isinstance(value, (int, Whole, Truth))
 
 
-def get_span(value: Any) -> Span:
+def get_span(value: Any) -> RealSpan:
     """Between which a number is, as a float."""
     if isinstance(value, Real):
         return value.span
     if isinstance(value, (Whole, Truth)):
         low, high = (value.low, value.high) if isinstance(value, Whole) else (0, 1)
-        return Span(math.nextafter(float(low), -math.inf), math.nextafter(float(high), math.inf), True)
+        return RealSpan(math.nextafter(float(low), -math.inf), math.nextafter(float(high), math.inf), True)
     number = float(value)
-    return Span(is_number=False) if math.isnan(number) else Span(number, number, True)
+    return RealSpan(is_number=False) if math.isnan(number) else RealSpan(number, number, True)
