@@ -8,7 +8,7 @@ adds, of messages within texts of 8 bytes and arrays of 3 elements and of any st
     crashes  what some message leads to: kind (as rosimpact names it) and line
     opaque   true where it cannot be said without code that is not in the workspace; then the others are left out
 What the tool says is computed when it is scored, on a checkout of the commit, and written beside it (NAME.said.jsonl).
-A crash that the reader has not got is judged afterwards by hand: `true` in NAME.verdicts.jsonl (repo, path, line, kind).
+A crash that the reader has not got is judged by hand afterwards: `true` in NAME.verdicts.jsonl (repo, path, line, kind)
 
 usage: value_sight.py draw --set NAME --clones FOLDER [--number 6] [--seed 20]
        value_sight.py score --set NAME --clones FOLDER --work FOLDER [--replay] [--seconds 20]

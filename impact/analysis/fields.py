@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -37,15 +38,15 @@ class FieldAnswer(NamedTuple):
 
 
 class OpenedFields(NamedTuple):
-    """A workspace whose topics are asked for their fields. asked: topics that the user named as closed; closed: these
-    and those of rosimpact.toml, to which nobody else subscribes."""
+    """A workspace whose topics are asked for their fields. asked: topics, or patterns of them, that the user named as
+    closed; closed: these and those of rosimpact.toml, to which nobody else subscribes."""
 
     workspace: Workspace
     tree: Tree
     store: Store
     graph: Graph
     asked: tuple[str, ...]
-    closed: frozenset[str]
+    closed: tuple[str, ...]
 
     def close_topics(self, found: FieldReport, topics: Sequence[str]) -> FieldReport:
         """A report with those topics closed that nobody else subscribes to. topics: that are asked for by name. Raises
@@ -53,11 +54,16 @@ class OpenedFields(NamedTuple):
         names = {one.topic for one in found.topics} | {topic for topic, _ in found.unknown}
         for option, given in (("--topic", topics), ("--assume-closed", self.asked)):
             for name in given:
-                if name not in names:
+                if name not in names and (option == "--topic" or not select_topics([name], names)):
                     near = _find_near(name, names)
                     raise CheckError(f"{option} {name}: no such topic; {near or '`rosimpact fields` lists all'}")
-        rows = tuple(_close(one) if one.topic in self.closed else one for one in found.topics)
-        return FieldReport(rows, found.unknown)
+        closed = self.select_closed(found)
+        rows = tuple(_close(one) if one.topic in closed else one for one in found.topics)
+        return FieldReport(rows, found.unknown, found.unnamed)
+
+    def select_closed(self, found: FieldReport) -> frozenset[str]:
+        """The topics of a report to which nobody else subscribes."""
+        return select_topics(self.closed, [*(one.topic for one in found.topics), *(topic for topic, _ in found.unknown)])
 
 
 @contextlib.contextmanager
@@ -65,14 +71,14 @@ def open_fields(
     path: Path, *, closed: Sequence[str] = (), rev: str = "", config: Path | None = None, jobs: int | None = None,
     progress: Callable[[int, int], None] | None = None, follow_links: bool = False,
 ) -> Iterator[OpenedFields]:  # fmt: skip
-    """The workspace at a path. closed: topics that nobody else subscribes to, as the user knows, besides those of
-    rosimpact.toml. The others as for check. Raises CheckError, ConfigError and TreeError with a text for the user."""
+    """The workspace at a path. closed: topics, or patterns of them, that nobody else subscribes to, as the user knows,
+    besides those of rosimpact.toml. The others as for check. Raises CheckError, ConfigError and TreeError with a text for the user."""
     tree = open_tree(path, rev, follow_links=follow_links)
     settings = load_settings(path, tree, config, follow_links=follow_links)
     with Store() as store:
         workspace = link_for_flow(tree, store, jobs, progress)
         graph = make_graph(workspace, store, jobs=jobs or 1)
-        yield OpenedFields(workspace, tree, store, graph, tuple(closed), frozenset((*closed, *settings.closed_topics)))
+        yield OpenedFields(workspace, tree, store, graph, tuple(closed), (*closed, *settings.closed_topics))
 
 
 def collect_fields(
@@ -87,7 +93,13 @@ def collect_fields(
     chosen = tuple(one for one in found.topics if not topics or one.topic in topics)
     unknown = tuple(row for row in found.unknown if not topics or row[0] in topics)
     sizes = {(one.topic, one.type): size for one in chosen if (size := definitions.measure(one, length)) is not None}
-    return FieldAnswer(FieldReport(chosen, unknown), sizes)
+    return FieldAnswer(FieldReport(chosen, unknown, () if topics else found.unnamed), sizes)
+
+
+def select_topics(patterns: Iterable[str], names: Iterable[str]) -> frozenset[str]:
+    """Those of the topics that a user names: in full, or as the shell would have it, `/camera/*`."""
+    asked = list(patterns)
+    return frozenset(name for name in names if any(fnmatchcase(name, pattern) for pattern in asked))
 
 
 def read_section(data: bytes | None) -> Section | None:

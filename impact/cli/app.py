@@ -107,7 +107,10 @@ _Jobs = Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number o
 _Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")]
 _AssumeClosed = Annotated[
     list[str],
-    typer.Option("--assume-closed", help="Nobody outside of this workspace subscribes to this topic. May be repeated."),
+    typer.Option(
+        "--assume-closed",
+        help="Nobody outside of this workspace subscribes to this topic; `*` matches any text. May be repeated.",
+    ),
 ]
 _SizeLength = Annotated[
     int, typer.Option("--length", min=0, help="Elements of strings and arrays, for the sizes that are shown.")

@@ -57,7 +57,7 @@ def prepare(
         reader = TopicReader(workspace, get_flow(workspace).code, opened.graph, extract_uses(workspace, jobs))
         report = opened.close_topics(reader.report(), topics)
         planner = Planner(
-            workspace, reader, report, opened.closed, lambda each: _read(tree, each), length,
+            workspace, reader, report, opened.select_closed(report), lambda each: _read(tree, each), length,
             KnownMessages(workspace, tree).find,
         )  # fmt: skip
         plan = planner.plan(topics)

@@ -99,9 +99,12 @@ def _parse_row(row: dict[str, Any]) -> WitnessRecord:
         values[path] = bits
     crash = CrashKind(row["crash"]) if row["crash"] is not None else None
     place = CodeLine(_check_text(row["place"]["path"]), int(row["place"]["line"]))
-    texts = [_check_text(row[key]) for key in ("kind", "node", "topic", "callback", "message_type", "path")]
+    kind, node, topic, callback, message_type, path = (
+        _check_text(row[key]) for key in ("kind", "node", "topic", "callback", "message_type", "path")
+    )
     witness = Witness(values, Reaction(row["result"]), crash, place)
-    return WitnessRecord(*texts, int(row["line"]), witness, _check_text(row.get("language", "cpp")))
+    language = _check_text(row.get("language", "cpp"))
+    return WitnessRecord(kind, node, topic, callback, message_type, path, int(row["line"]), witness, language)
 
 
 def _check_text(text: object) -> str:
@@ -302,10 +305,12 @@ def _write_gtest(interfaces: FindInterface, records: Sequence[WitnessRecord]) ->
     )
     lines = ["// Messages that callbacks once could not handle; written by rosimpact.",
              "// Start the node under test beside it, as launch_testing and rostest do.",
-             "#include <array>", "#include <chrono>", "#include <limits>", "#include <thread>", "#include <gtest/gtest.h>",
+             "#include <array>", "#include <chrono>", "#include <limits>", "#include <thread>",
+             "#include <gtest/gtest.h>",
              "#include <rclcpp/rclcpp.hpp>" if ros2 else "#include <ros/ros.h>",
              *(f"#include <{each}>" for each in headers), "",
-             "template <class T> auto resize_array(T & array, size_t size) -> decltype(array.resize(size)) { array.resize(size); }",
+             "template <class T>", "auto resize_array(T & array, size_t size) -> decltype(array.resize(size))",
+             "{", "  array.resize(size);", "}",
              "template <class T, size_t N> void resize_array(std::array<T, N> &, size_t) {}",
              *([] if ros2 else ["template <class T, size_t N> void resize_array(boost::array<T, N> &, size_t) {}"]),
              ""]  # fmt: skip
@@ -361,7 +366,8 @@ def _send_ros2(record: WitnessRecord, type_: str) -> list[str]:
 def _send_ros1(record: WitnessRecord, type_: str) -> list[str]:
     return [
         "  ros::NodeHandle node;", f'  ros::Publisher publisher = node.advertise<{type_}>("{record.topic}", 10);',
-        "  for (int turn = 0; turn < 100 && publisher.getNumSubscribers() == 0; ++turn) ros::WallDuration(0.1).sleep();",
+        "  for (int turn = 0; turn < 100 && publisher.getNumSubscribers() == 0; ++turn)",
+        "    ros::WallDuration(0.1).sleep();",
         "  ASSERT_GT(publisher.getNumSubscribers(), 0u);", "  publisher.publish(message);",
         "  ros::WallDuration(2.0).sleep();", "  EXPECT_GT(publisher.getNumSubscribers(), 0u);",
     ]  # fmt: skip

@@ -64,7 +64,9 @@ class TopicFields(msgspec.Struct, frozen=True):
 
 
 class FieldReport(msgspec.Struct, frozen=True):
-    """All topics. unknown: topics whose type's fields are not known, with the type."""
+    """All topics. unknown: topics whose type's fields are not known, with the type. unnamed: subscribers whose topic is
+    not known, under an empty name, by type."""
 
     topics: tuple[TopicFields, ...] = ()
     unknown: tuple[tuple[str, str], ...] = ()
+    unnamed: tuple[TopicFields, ...] = ()

@@ -438,6 +438,43 @@ def test_filters_look_at_the_header(path, code, reads, escapes, tmp_path):
     assert tell(find_subscriber(report(tmp_path, {path: code}))) == (reads, escapes)
 
 
+TWO = """#include <message_filters/synchronizer.h>
+#include <robot/Status.h>
+using Sync = message_filters::Synchronizer<Policy>;
+class Watch {{
+ public:
+  Watch() {{
+    one_.subscribe(nh_, "other", 1);
+    two_.subscribe(nh_, "status", 1);
+    sync_ = std::make_shared<Sync>(Policy(5), one_, two_);
+    sync_->registerCallback({callback});
+  }}
+  void onBoth(const robot::Status::ConstPtr& one, const robot::Status::ConstPtr& two) {{
+    int x = one->level + two->name.size();
+  }}
+  void onSwapped(const robot::Status::ConstPtr& two, const robot::Status::ConstPtr& one) {{ onBoth(one, two); }}
+  ros::NodeHandle nh_;
+  message_filters::Subscriber<robot::Status> one_, two_;
+  std::shared_ptr<Sync> sync_;
+}};
+int main(int argc, char** argv) {{ ros::init(argc, argv, "watch"); Watch watch; ros::spin(); }}
+"""
+
+
+@pytest.mark.parametrize(
+    ("callback", "reads"),
+    [
+        ("std::bind(&Watch::onBoth, this, std::placeholders::_1, std::placeholders::_2)", {"name"}),
+        ("boost::bind(&Watch::onBoth, this, _1, _2)", {"name"}),
+        ("&Watch::onBoth, this", {"name"}),
+        ("boost::bind(&Watch::onSwapped, this, _2, _1)", {"level", "name"}),
+    ],
+)
+def test_a_synchronizer_gives_messages_in_the_order_of_its_filters(callback, reads, tmp_path):
+    found = report(tmp_path, {"src/watch.cpp": TWO.format(callback=callback)})
+    assert tell(find_subscriber(found)) == (reads, {"header.stamp"})
+
+
 @pytest.mark.parametrize(
     ("body", "unread"),
     [
@@ -449,6 +486,76 @@ def test_filters_look_at_the_header(path, code, reads, escapes, tmp_path):
 )
 def test_where_the_size_is_asked_for_elements_stay(body, unread, tmp_path):
     assert {field for field in read_python(tmp_path, body).unread if field.startswith("points")} == unread
+
+
+LAUNCH = """<launch>
+  <node pkg="robot" type="watch.py" name="watch"/>
+  {more}
+</launch>
+"""
+
+
+@pytest.mark.parametrize(
+    ("more", "why"),
+    [
+        ("", ""),
+        ('<node pkg="rviz" type="rviz" name="rviz"/>',
+         "robot/launch/all.launch:3 starts `rviz`, whose code is not here"),
+        ('<include file="$(find other)/launch/other.launch"/>',
+         "robot/launch/all.launch:3 includes `$(find other)/launch/other.launch`, which is not here"),
+    ],
+    ids=["its own nodes", "a program of another package", "a launch file of another package"],
+)  # fmt: skip
+def test_what_a_launch_file_starts_of_other_packages_may_read_a_topic(more, why, tmp_path):
+    code = SCRIPT.format(body="        x = msg.level", members="", before="")
+    found = report(tmp_path, {"scripts/watch.py": code, "launch/all.launch": LAUNCH.format(more=more)})
+    (topic,) = [one for one in found.topics if one.topic == "/status"]
+    assert topic.open == ((why,) if why else ())
+    assert bool(topic.unread) == (not why)
+
+
+def test_subscribers_whose_topic_is_not_known_are_told_apart(tmp_path):
+    code = SCRIPT.format(body="        x = msg.level", members="", before="")
+    code = code.replace('rospy.Subscriber("status"', 'rospy.Subscriber(rospy.get_param("~topic")')
+    found = report(tmp_path, {"scripts/watch.py": code})
+    assert [one.topic for one in found.topics] == []
+    (unnamed,) = found.unnamed
+    assert (unnamed.topic, unnamed.type, unnamed.unread) == ("", "robot/Status", ())
+    assert tell(unnamed.subscribers[0]) == ({"level"}, set())
+
+
+MIRROR = """class Mirror:
+    def __setattr__(self, name, value):
+        print(value.pose.position.x)
+
+class Other:
+    def __setattr__(self, name, value):
+        print(value.name)
+"""
+
+
+@pytest.mark.parametrize(("base", "reads"), [("Mirror", {"pose.position.x"}), ("object", set())])
+def test_setting_an_attribute_calls_what_its_class_has_for_it(base, reads, tmp_path):
+    code = SCRIPT.format(body="        self.kept = msg", members="", before=MIRROR)
+    code = code.replace("class Watch:", f"class Watch({base}):")
+    assert tell(find_subscriber(report(tmp_path, {"scripts/watch.py": code})))[0] == reads
+
+
+def test_a_filter_that_a_pointer_is_made_of(tmp_path):
+    code = """#include <message_filters/subscriber.h>
+#include <robot/Status.h>
+void onStatus(const robot::Status::ConstPtr& msg) { int x = msg->level; }
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "watch");
+  ros::NodeHandle nh;
+  boost::shared_ptr<message_filters::Subscriber<robot::Status> > sub(
+      new message_filters::Subscriber<robot::Status>(nh, "status", 1));
+  sub->registerCallback(onStatus);
+  ros::spin();
+}
+"""
+    found = report(tmp_path, {"src/watch.cpp": code})
+    assert tell(find_subscriber(found)) == ({"level"}, {"header.stamp"})
 
 
 # What the publisher does with `msg` before it publishes it, and the lengths that this writes.
