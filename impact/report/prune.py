@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from msgspec import to_builtins
 
 from ...edges.console import format_count, format_json
-from ..measure.gains import TopicGain
 from ..prune.planner import PrunePlan, TopicPlan
 from ..prune.verify import Verification
 from .columns import LinePart, lay_out
 from .fields import WIDE
-from .measure import describe_conditions, format_interval
 from .schemas import SCHEMA
 from .style import Style
+
+if TYPE_CHECKING:
+    from ..measure.gains import TopicGain
 
 _MOST = 12
 
@@ -59,6 +61,8 @@ def _render_gain(gain: TopicGain, style: Style) -> Iterator[str]:
     if gain.full is None or gain.pruned is None:
         yield from lay_out([*head, LinePart(f"not: {gain.failure}")], style, 2, 6)
         return
+    from .measure import format_interval
+
     full, pruned = gain.full, gain.pruned
     yield from lay_out([*head, LinePart(f"at {gain.rate:g} Hz, {'; '.join(gain.notes)}")], style, 2, 6)
     pairs = [
@@ -79,6 +83,8 @@ def _describe_measurement(gains: Sequence[TopicGain]) -> list[str]:
     header = next((gain.header for gain in gains if gain.header is not None), None)
     if header is None:
         return []
+    from .measure import describe_conditions  # it brings numpy, which a plan alone does not need
+
     return [*describe_conditions(header, cells), "bytes with the 20 that the measurement adds to each message"]
 
 
