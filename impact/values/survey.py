@@ -21,7 +21,7 @@ from .evaluate import Evaluated, evaluate
 from .harness.callbacks import CppCallback, list_callbacks
 from .harness.compile import CannotCompile
 from .harness.fuzzing import run_fuzzer
-from .harness.interfaces import Definitions, list_constants
+from .harness.interfaces import KnownInterfaces, list_constants
 from .harness.replay import Replayed, is_confirmed
 from .harness.session import HarnessSession, PreparedCallback, is_asked
 from .ir.explore import explore
@@ -66,7 +66,7 @@ class Survey:
 
     def __init__(self, root: Path, workspace: Workspace, graph: Graph, bounds: Bounds):
         self.root, self.workspace, self.graph, self.bounds = root.resolve(), workspace, graph, bounds
-        self._definitions = Definitions(workspace)
+        self._definitions = KnownInterfaces(workspace)
 
     def explore(
         self, asked: Asked, *, replays: bool = False, fuzz_seconds: float = 0.0, jobs: int = 1,
