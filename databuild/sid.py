@@ -49,6 +49,8 @@ zstd=libzstd-dev
 PACKAGES = dict(one.split("=") for one in _NAMED.split())
 """Libraries, by their names in platform_versions.yaml, with the Debian package whose version that table has. Compilers
 are left out: the changelog of their default has numbers of its own."""
+_DEFAULTS = frozenset(("boost",))
+"""Libraries whose package names the default version, with a last number of its own."""
 _ENTRY = re.compile(
     r"^\S+ \((?P<version>[^)\s]+)\) (?P<suites>[^;\n]*);.*?^ -- [^\n]*>  (?P<day>[^\n]+)$", re.MULTILINE | re.DOTALL
 )
@@ -73,7 +75,10 @@ def read_changelogs(work: Path, configuration: Path) -> Iterator[tuple[str, dict
         kept = work / f"{package}.changelog"
         if not kept.exists():
             write_file(kept, _fetch_changelog(package, work, configuration))
-        yield library, read_changelog(kept.read_text(encoding="utf-8", errors="replace"))
+        rows = read_changelog(kept.read_text(encoding="utf-8", errors="replace"))
+        if library in _DEFAULTS:
+            rows = {day: ".".join(version.split(".")[:3]) for day, version in rows.items()}
+        yield library, rows
 
 
 def _fetch_changelog(package: str, work: Path, configuration: Path) -> bytes:
