@@ -46,7 +46,7 @@ tinyxml2=libtinyxml2-dev transforms3d=python3-transforms3d urdfdom=liburdfdom-de
 urdfdom-headers=liburdfdom-headers-dev vtk=libvtk9-dev yaml-cpp=libyaml-cpp-dev zeromq=libzmq3-dev
 zstd=libzstd-dev
 """
-PACKAGES = dict(one.split("=") for one in _NAMED.split())
+PACKAGES = {name: package for name, _, package in (one.partition("=") for one in _NAMED.split())}
 """Libraries, by their names in platform_versions.yaml, with the Debian package whose version that table has. Compilers
 are left out: the changelog of their default has numbers of its own."""
 _DEFAULTS = frozenset(("boost",))

@@ -58,7 +58,7 @@ class CMakeValue:
         self.sure = sure
         self.defined = defined
         self.ways: tuple[tuple[tuple[Condition, ...], CMakeValue | None], ...] = ()
-        self.left = self.ways
+        self.left: tuple[tuple[tuple[Condition, ...], CMakeValue | None], ...] = ()
 
 
 UNSET = CMakeValue((), True, False)
