@@ -46,9 +46,11 @@ tinyxml2=libtinyxml2-dev transforms3d=python3-transforms3d urdfdom=liburdfdom-de
 urdfdom-headers=liburdfdom-headers-dev vtk=libvtk9-dev yaml-cpp=libyaml-cpp-dev zeromq=libzmq3-dev
 zstd=libzstd-dev
 """
-PACKAGES = dict(one.split("=") for one in _NAMED.split())
+PACKAGES = {name: package for name, _, package in (one.partition("=") for one in _NAMED.split())}
 """Libraries, by their names in platform_versions.yaml, with the Debian package whose version that table has. Compilers
 are left out: the changelog of their default has numbers of its own."""
+_DEFAULTS = frozenset(("boost",))
+"""Libraries whose package names the default version, with a last number of its own."""
 _ENTRY = re.compile(
     r"^\S+ \((?P<version>[^)\s]+)\) (?P<suites>[^;\n]*);.*?^ -- [^\n]*>  (?P<day>[^\n]+)$", re.MULTILINE | re.DOTALL
 )
@@ -73,7 +75,10 @@ def read_changelogs(work: Path, configuration: Path) -> Iterator[tuple[str, dict
         kept = work / f"{package}.changelog"
         if not kept.exists():
             write_file(kept, _fetch_changelog(package, work, configuration))
-        yield library, read_changelog(kept.read_text(encoding="utf-8", errors="replace"))
+        rows = read_changelog(kept.read_text(encoding="utf-8", errors="replace"))
+        if library in _DEFAULTS:
+            rows = {day: ".".join(version.split(".")[:3]) for day, version in rows.items()}
+        yield library, rows
 
 
 def _fetch_changelog(package: str, work: Path, configuration: Path) -> bytes:

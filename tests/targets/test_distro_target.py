@@ -422,9 +422,11 @@ def test_rosdep_says_nothing_of_systems_that_it_does_not_know(platform, expected
     [("humble@2024-10-01", "conda-forge", "boost", "1.84"), ("humble@2022-10-01", "conda-forge", "boost", "1.74.0"),
      ("jazzy@2026-02-01", "robostack", "fmt", "12.1.0"), ("jazzy@2025-08-01", "robostack", "cmake", "3.31.6"),
      ("jazzy@2025-08-01", "conda", "cmake", "4.0.3"), ("humble@2025-08-01", "conda-forge", "python", None),
-     ("jazzy@2025-08-01", "conda-forge", "no-such-library", None)],
+     ("jazzy@2025-08-01", "conda-forge", "no-such-library", None),
+     ("rolling@2025-06-01", "debian sid", "boost", "1.83.0"), ("rolling@2025-06-01", "debian sid", "cmake", "3.31.6"),
+     ("rolling@2026-08-01", "debian sid", "python", "3.14.6")],
 )  # fmt: skip
-def test_conda_forge_and_robostack_have_versions_by_day(text, platform, library, version):
+def test_conda_forge_robostack_and_debian_unstable_have_versions_by_day(text, platform, library, version):
     distro, day = text.split("@")
     assert DistroTarget(distro, day, platform).find_library(library) == version
 

@@ -223,7 +223,7 @@ class RefusedName(msgspec.Struct, frozen=True, array_like=True, gc=False):
     both times), `mixed` (a target that is linked with keywords and without), `no scope` (an argument that stands
     where a command wants PUBLIC, PRIVATE or INTERFACE), `no target` (something is given to a target that is not
     there yet, or never), `branch` (the same, where it is there under one of `ways` alone, the conditions of what
-    makes it), `branch sources` (a target whose sources, `patterns`, are there under one of `ways` alone), `project`
+    makes it), `branch sources` (a target whose sources, `patterns`, are none under one of `ways`), `project`
     (catkin_package() or ament_package() finds another name in package.xml than that of the project), `version`
     (project() is given a version under the policies of a CMake before 3.0), `no value` (a property of
     set_target_properties() whose value is a variable that nothing sets), `no sources` (a library or executable of

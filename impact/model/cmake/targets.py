@@ -83,13 +83,19 @@ def add_executable(run: Interpreter, call: CommandCall, args: list[Word]) -> Non
 
 
 def note_sourceless(run: Interpreter, call: CommandCall, name: Word, sources: list[Word]) -> None:
-    """Refuses a target all of whose sources are of a file(GLOB) that finds none, or stand in branches."""
-    if sources:
-        if all(source.conditions and "$" not in source for source in sources):
-            ways = [source.conditions for source in sources]
-            run.refuse("branch sources", name, patterns=[*map(run.resolve_tree_path, sources)], ways=ways)
-        return
+    """Refuses a target all of whose sources are of a file(GLOB) that finds none, or of a variable that some branches
+    leave empty."""
     variables = [template.raw[2:-1] for template in call.templates[1:] if template.raw.startswith("${")]
+    if sources:
+        held = run.get(variables[0]) if len(variables) == 1 else None
+        known = held is not None and all(value is None or value.sure for _, value in held.left)
+        if held is not None and known and len(sources) == len(held.words):
+            empty = [conditions for conditions, value in held.left if value is None or not value.words]
+            paths = [run.resolve_tree_path(source) for source in sources]
+            set_elsewhere = any(use.kind == "command" and variables[0] in use.makes for use in run.uses)
+            if empty and "$" not in held.text and not set_elsewhere:
+                run.refuse("branch sources", name, patterns=paths, ways=empty)
+        return
     patterns = [pattern for variable in variables for pattern in run.empty_globs.get(variable, ())]
     if patterns and len(variables) == sum(variable in run.empty_globs for variable in variables):
         run.refuse("no sources", name, patterns=patterns)

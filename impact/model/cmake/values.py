@@ -46,9 +46,10 @@ class CMakeValue:
     """What a variable holds. words is the list view: the union of all branches that wrote it; text is what was written
     last, and chosen its words; sure is False when branches differ or a user may override it; defined is False for a
     variable that is known to be unset. ways: of what differing branches leave, each with the conditions under which it
-    is left, of which no two hold together; None is never set. Empty where that is not known."""
+    is left, of which no two hold together; None is never set. Empty where that is not known, and where all but one
+    leave nothing. left: the same, these too."""
 
-    __slots__ = ("chosen", "defined", "sure", "text", "ways", "words")
+    __slots__ = ("chosen", "defined", "left", "sure", "text", "ways", "words")
 
     def __init__(self, words: tuple[Word, ...], sure: bool = True, defined: bool = True):
         self.words = words
@@ -57,6 +58,7 @@ class CMakeValue:
         self.sure = sure
         self.defined = defined
         self.ways: tuple[tuple[tuple[Condition, ...], CMakeValue | None], ...] = ()
+        self.left: tuple[tuple[tuple[Condition, ...], CMakeValue | None], ...] = ()
 
 
 UNSET = CMakeValue((), True, False)
@@ -101,6 +103,8 @@ def join(
         for held, value in zip(tests, values, strict=False)
         for inner, way in ((value.ways if value is not None else ()) or (((), value),))
     ]
+    if len(ways) <= _MAX_WAYS and len(tests) == len(values):
+        made.left = tuple(ways)
     if len(known) > 1 and len(ways) <= _MAX_WAYS:
         made.ways = tuple(ways)
     return made

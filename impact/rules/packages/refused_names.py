@@ -7,8 +7,7 @@ from ...model.cmake.conditions import make_version_key
 from ..vocabulary import Diagnostic, Package, TargetView, list_place_doubts
 
 # What only code that is not read can mend.
-_BRANCHED = frozenset(("branch", "branch sources"))
-_HIDDEN = frozenset((*_BRANCHED, "no sources", "no target", "no value"))
+_HIDDEN = frozenset(("branch", "branch sources", "no sources", "no target", "no value"))
 
 
 def list_refused(view: TargetView, package: Package, *kinds: str) -> Iterator[RefusedName]:
@@ -20,7 +19,9 @@ def list_refused(view: TargetView, package: Package, *kinds: str) -> Iterator[Re
             continue
         # In other branches a target is made on other machines alone.
         distro = any("ROS_DISTRO" in condition.text for way in refused.ways for condition in way)
-        if refused.kind in _BRANCHED and (any(map(view.applies, refused.ways)) or not distro):
+        if refused.kind == "branch" and (any(map(view.applies, refused.ways)) or not distro):
+            continue
+        if refused.kind == "branch sources" and not (distro and any(map(view.is_sure, refused.ways))):
             continue
         if refused.name not in seen:
             seen.add(refused.name)
