@@ -435,7 +435,9 @@ def _compare_guards(old: Sequence[Path], new: Sequence[Path], names: Renames, la
     kind = guards.compare_ways(*known, reading)
     if kind == "equivalent":
         return kind, ""
-    kinds: dict[tuple[Ways, Ways], guards.Kind] = {pair: guards.compare_ways(*pair, reading) for pair in (written, meant, known)}
+    kinds: dict[tuple[Ways, Ways], guards.Kind] = {
+        pair: guards.compare_ways(*pair, reading) for pair in (written, meant, known)
+    }
     if kinds[written] == "equivalent":
         same = _collect_condition_names(known[0], names) == _collect_condition_names(known[1], SAME)
         if (kind == "changed" and same) or _resolves_more(old, new) or _resolves_more(new, old):
