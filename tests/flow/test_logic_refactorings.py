@@ -349,6 +349,14 @@ CPP_CASES = [
         say("auto can = [this]() { return ready_; }; if (can()) pub_.publish(msg);"),
         [],
     ),
+    (
+        "a pause with a name",
+        "void send() { pub_.publish(last_); }\n  void run() { while (ros::ok()) { send(); std::this_thread::sleep_for("
+        "std::chrono::milliseconds(5)); } }\n" + say("last_ = msg;"),
+        "void send() { pub_.publish(last_); }\n  void run() { while (ros::ok()) { send(); "
+        "std::chrono::milliseconds pause(5); std::this_thread::sleep_for(pause); } }\n" + say("last_ = msg;"),
+        [],
+    ),
     # Names for numbers and objects, and other words for one thing.
     ("an object with a short name", say("if (state_.ready_) pub_.publish(msg);"),
      say("const auto& state = state_; if (state.ready_) pub_.publish(msg);"), []),
@@ -404,7 +412,8 @@ CPP_CASES = [
     (
         "a helper that is called once for each statement there was",
         say("if (ready_) { pub_.publish(a_); pub_.publish(b_); pub_.publish(c_); }"),
-        "void put(const std_msgs::String& m) { pub_.publish(m); }\n" + say("if (ready_) { put(a_); put(b_); put(c_); }"),
+        "void put(const std_msgs::String& m) { pub_.publish(m); }\n"
+        + say("if (ready_) { put(a_); put(b_); put(c_); }"),
         [],
     ),
     (
@@ -705,7 +714,8 @@ STATES = """
 
 
 def test_statements_of_one_publisher_are_told_apart_where_their_function_changes() -> None:
-    moved = "        self.step()\n\n    def other(self):\n        pass\n\n    def step(self):\n" + "        self.last = 1\n" * 9
+    moved = "        self.step()\n\n    def other(self):\n        pass\n\n    def step(self):\n"
+    moved += "        self.last = 1\n" * 9
     assert compare_python(STATES, moved + STATES) == []
     found = compare_python(STATES, moved + STATES.replace("0.05", "0.5"))
     assert found == [("widened", "`self.height <= 0.5` was `self.height <= 0.05`")]
