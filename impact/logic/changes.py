@@ -435,10 +435,12 @@ def _compare_guards(old: Sequence[Path], new: Sequence[Path], names: Renames, la
     kind = guards.compare_ways(*known, reading)
     if kind == "equivalent":
         return kind, ""
-    kinds: dict[tuple[Ways, Ways], guards.Kind] = {pair: guards.compare_ways(*pair, reading) for pair in (written, meant, known)}
+    kinds: dict[tuple[Ways, Ways], guards.Kind] = {
+        pair: guards.compare_ways(*pair, reading) for pair in (written, meant, known)
+    }
     if kinds[written] == "equivalent":
         same = _collect_condition_names(known[0], names) == _collect_condition_names(known[1], SAME)
-        if (kind == "changed" and same) or _resolves_more(old, new) or _resolves_more(new, old):
+        if (kind == "changed" and same) or _has_more_names(old, new) or _has_more_names(new, old):
             return "equivalent", ""  # what is asked is called otherwise, of the same things; or is known on one side
     if kind == "changed" and kinds[written] != "equivalent" and _means_same(old, new):
         kind = kinds[written]
@@ -448,7 +450,7 @@ def _compare_guards(old: Sequence[Path], new: Sequence[Path], names: Renames, la
     return kind, min(clauses, key=len) if clauses else guards.explain_ways(*known, reading)
 
 
-def _resolves_more(ways: Sequence[Path], others: Sequence[Path]) -> bool:
+def _has_more_names(ways: Sequence[Path], others: Sequence[Path]) -> bool:
     """Whether a name that is put back on some ways stands there as it is on others, in guards that are written alike.
     """
     meant = {gate.text: gate for way in ways for gate in way.gates}

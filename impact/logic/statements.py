@@ -400,11 +400,16 @@ class _Digester:
 
 
 def _describe_number(value: FlowExpr, fn: Fn) -> str:
-    """A number as written; that of a variable that is one and nothing else."""
+    """A number or duration as written; that of a variable that is one and nothing else."""
     made = fn.assigned.get(value.text, []) if value.kind == "name" and value.text in fn.locals else []
-    if len(made) == 1 and made[0].operator == "=" and made[0].value.kind == "number":
+    if len(made) == 1 and made[0].operator == "=" and (made[0].value.kind == "number" or _is_duration(made[0].value)):
         return unparse(made[0].value)
     return unparse(value)
+
+
+def _is_duration(value: FlowExpr) -> bool:
+    """Whether a value is an object that is made of one number."""
+    return value.kind == "make" and len(value.parts) == 1 and value.parts[0].kind == "number"
 
 
 def _get_node(owner: Owner) -> Node | None:

@@ -349,6 +349,14 @@ CPP_CASES = [
         say("auto can = [this]() { return ready_; }; if (can()) pub_.publish(msg);"),
         [],
     ),
+    (
+        "a pause with a name",
+        "void send() { pub_.publish(last_); }\n  void run() { while (ros::ok()) { send(); std::this_thread::sleep_for("
+        "std::chrono::milliseconds(5)); } }\n" + say("last_ = msg;"),
+        "void send() { pub_.publish(last_); }\n  void run() { while (ros::ok()) { send(); "
+        "std::chrono::milliseconds pause(5); std::this_thread::sleep_for(pause); } }\n" + say("last_ = msg;"),
+        [],
+    ),
     # Names for numbers and objects, and other words for one thing.
     ("an object with a short name", say("if (state_.ready_) pub_.publish(msg);"),
      say("const auto& state = state_; if (state.ready_) pub_.publish(msg);"), []),
@@ -389,6 +397,51 @@ CPP_CASES = [
     ),
     ("code that is put aside", say("pub_.publish(msg);"), say("\n#if 0\n pub_.publish(msg);\n#endif\n"),
      [("tightened", "never runs")]),
+    (
+        "a variable that keeps its value",
+        say("pub_.publish(msg);"),
+        say("static double last = -1;\n if (stamp_ - last >= 3) {\n pub_.publish(msg);\n last = stamp_; }"),
+        [("tightened", "only when `stamp_ - last >= 3`")],
+    ),
+    (
+        "what a loop counts",
+        say("int count = 0;\n while (count < 1000) {\n pub_.publish(msg);\n count += 1; }"),
+        say("int count = 0;\n while (count < limit_) {\n pub_.publish(msg);\n count += 1; }"),
+        [("changed", "`count < limit_` was `count < 1000`")],
+    ),
+    (
+        "a helper that is called once for each statement there was",
+        say("if (ready_) { pub_.publish(a_); pub_.publish(b_); pub_.publish(c_); }"),
+        "void put(const std_msgs::String& m) { pub_.publish(m); }\n"
+        + say("if (ready_) { put(a_); put(b_); put(c_); }"),
+        [],
+    ),
+    (
+        "a helper that is called less often",
+        say("if (ready_) { pub_.publish(a_); pub_.publish(b_); pub_.publish(c_); }"),
+        "void put(const std_msgs::String& m) { pub_.publish(m); }\n" + say("if (ready_) { put(a_); put(b_); }"),
+        [("gone", ""), ("gone", "")],
+    ),
+    (
+        "a structure's members become the class's",
+        say("if (arena_.x < 2 || arena_.y < 1) return; pub_.publish(msg);"),
+        say("if (arena_x_ < 2 || arena_y_ < 1) return; pub_.publish(msg);"),
+        [],
+    ),
+    (
+        "a structure's members become each other's",
+        say("if (arena_.x < 2 || arena_.y < 1) return; pub_.publish(msg);"),
+        say("if (arena_y_ < 2 || arena_x_ < 1) return; pub_.publish(msg);"),
+        [("changed", "")],
+    ),
+    (
+        "a function that computes with its own variables",
+        "bool find() { bool found = false; do { found = look(); } while (!found); return found; }\n"
+        + say("if (find()) pub_.publish(msg);"),
+        "bool find() { bool seen = false; do { seen = look(); } while (!seen); return seen; }\n"
+        + say("if (find()) pub_.publish(msg);"),
+        [],
+    ),
 ]
 
 
@@ -644,3 +697,50 @@ public:
 )
 def test_a_period_is_what_it_comes_to(old: str, new: str, said: list[tuple[str, str]]) -> None:
     assert compare({"b.cpp": PACED.replace("PERIOD", old)}, {"b.cpp": PACED.replace("PERIOD", new)}) == said
+
+
+STATES = """
+        if self.state == 1:
+            msg = 1
+            self.pub.publish(msg)
+        elif self.state == 2:
+            if self.height <= 0.05:
+                msg = 2
+                self.pub.publish(msg)
+        elif self.state == 3:
+            msg = 3
+            self.pub.publish(msg)
+"""
+
+
+def test_statements_of_one_publisher_are_told_apart_where_their_function_changes() -> None:
+    moved = "        self.step()\n\n    def other(self):\n        pass\n\n    def step(self):\n"
+    moved += "        self.last = 1\n" * 9
+    assert compare_python(STATES, moved + STATES) == []
+    found = compare_python(STATES, moved + STATES.replace("0.05", "0.5"))
+    assert found == [("widened", "`self.height <= 0.5` was `self.height <= 0.05`")]
+
+
+ROUTER = {
+    "talker.cpp": CPP.replace(
+        "BODY", "Router router_;\n  bool plan() { return router_.table(3); }\n" + say("if (plan()) pub_.publish(msg);")
+    )
+}
+TABLE = "struct Router { bool table(int a); int size_; };\nbool Router::table(int a) { return size_ > a; }\n"
+
+
+def test_a_name_that_becomes_known_is_no_change() -> None:
+    assert compare(ROUTER, {**ROUTER, "router.cpp": TABLE}) == []
+    assert compare({**ROUTER, "router.cpp": TABLE}, ROUTER) == []
+    larger = {**ROUTER, "talker.cpp": ROUTER["talker.cpp"].replace("table(3)", "table(5)"), "router.cpp": TABLE}
+    known = {**ROUTER, "router.cpp": TABLE}
+    assert compare(known, larger) == [("tightened", "`router_.size_ > 5` was `router_.size_ > 3`")]
+
+
+def test_a_latch_with_a_name_is_a_latch() -> None:
+    body = say("pub_.publish(msg);")
+    latched = CPP.replace("BODY", body).replace('("out", 1)', '("out", 1, true)')
+    named = latched.replace("Talker() {", "Talker() {\n    bool latch = true;").replace("1, true)", "1, latch)")
+    assert compare({"talker.cpp": latched}, {"talker.cpp": named}) == []
+    off = {"talker.cpp": named.replace("latch = true", "latch = false")}
+    assert compare({"talker.cpp": latched}, off) == [("trigger changed", "durability `volatile` was `transient_local`")]
