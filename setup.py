@@ -14,6 +14,7 @@ setup(
         "rosimpact.impact.rules": ["precision.json"],
         "rosimpact.impact.report": ["*.css", "*.html", "*.js", "*.json"],
         "rosimpact.impact.measure.nodes": ["node.cpp", "CMakeLists.txt"],
+        "rosimpact.impact.values.harness": ["runtime/*", "runtime/**/*"],
         "rosimpact.impact.model.cmake": ["*.toml"],
         "rosimpact.impact.model.flow": ["*.toml"],
         "rosimpact.impact.report.graph": ["assets/*"],

@@ -349,6 +349,39 @@ def fields(
 
 
 @_add_command(app)
+def values(
+    path: _Workspace = Path("."),
+    node: list[str] = _make_option("Only callbacks of this node. May be repeated."),
+    topic: list[str] = _make_option("Only callbacks of this topic. May be repeated."),
+    callback: list[str] = _make_option("Only this callback, by its name or the end of it. May be repeated."),
+    kind: list[str] = _make_option(
+        "Kinds of callbacks: subscriber, service, timer, action [default: subscriber]. May be repeated."
+    ),
+    text: int = _make_option("Bytes of a text at most.", default=8, min=0, max=64),
+    array: int = _make_option("Elements of an array at most.", default=3, min=0, max=64),
+    loops: int = _make_option("Rounds of a loop at most.", default=8, min=1),
+    seconds: float = _make_option("Time for each callback.", default=20.0, min=0.1),
+    replay: bool = _make_option(
+        "Run every example for real: compiles and runs code of the workspace, in processes of their own with limits.",
+        "--replay",
+        default=False,
+    ),
+    publishers: bool = _make_option(
+        "Explore also what publishes the messages, and compare.", "--publishers/--no-publishers", default=True
+    ),
+    follow_links: _FollowLinks = False,
+    format: str = _make_option("text or json.", "--format", "-f", default="text"),
+    output: _Output = None,
+    all: bool = _make_option("Show every field, example and reason.", "--all", default=False),
+    jobs: _Jobs = None,
+    quiet: _Quiet = False,
+) -> None:
+    """Show for which values of a message callbacks act, do nothing, only log or crash, each with an example, and which
+    of these values publishers send. C++ callbacks need clang 15 or newer; nothing of the workspace runs without
+    --replay."""
+
+
+@_add_command(app)
 def prune(
     path: _Workspace = Path("."),
     topic: list[str] = _make_option("Only this topic. May be repeated."),

@@ -1,0 +1,1 @@
+"""A program without ROS around one callback: generated, compiled, run natively, fuzzed, handed to KLEE."""
