@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from ...edges.console import format_count, format_json
 from ..analysis.values import ValuesAnswer
 from ..values.answers import CallbackAnswer, Example, FieldSets, read_example
+from ..values.harness.replay import Replayed
 from ..values.matching import SEVERITIES, Mismatch
-from ..values.outcomes import Bounds, InputKind, Reaction
+from ..values.outcomes import Bounds, CodeLine, CrashKind, InputKind, Reaction
 from ..values.projection import FieldValues, format_values
+from ..values.witnesses import WitnessRecord
 from .columns import UNBROKEN, LinePart, lay_out
 from .schemas import SCHEMA
 from .style import Style
@@ -269,3 +271,23 @@ def _tame(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return "NaN" if math.isnan(value) else "Infinity" if value > 0 else "-Infinity"
     return value
+
+
+def render_replays(rows: Sequence[tuple[WitnessRecord, Replayed, bool]]) -> str:
+    """Recorded witnesses with what a replay of each showed."""
+    lines: list[str] = []
+    for record, seen, same in rows:
+        state = "seen again" if same else "not seen"
+        pieces = [LinePart(f"{state}:", "good" if same else "warning"), LinePart(record.callback, "bold")]
+        pieces.append(LinePart(_tell(record.witness.crash, record.witness.result, record.witness.place)))
+        if not same:
+            pieces.append(LinePart(f"now: {seen.reason or _tell(seen.crash, seen.result, seen.place)}"))
+        lines += lay_out(pieces, WIDE, 0, 4)
+    again = sum(same for _, _, same in rows)
+    lines.append(f"{format_count(len(rows), 'message')}, {again} seen again")
+    return "\n".join(lines) + "\n"
+
+
+def _tell(crash: CrashKind | None, result: Reaction, place: CodeLine) -> str:
+    what = crash.value if crash is not None else result.value
+    return f"{what} at {place.path}:{place.line}" if crash is not None and place.line else what

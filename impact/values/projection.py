@@ -265,11 +265,8 @@ class _Projector:
             length = model.get(name, 0)
             text = bytes(model.get(each, 0) for each in characters[:length])
             found.append(text)
-            excluded.append(
-                z3.Not(z3.And(size == length, *[
-                    self.inputs[each].term == byte for each, byte in zip(characters, text, strict=False)
-                ]))
-            )  # fmt: skip
+            same = [self.inputs[each].term == byte for each, byte in zip(characters, text, strict=False)]
+            excluded.append(z3.Not(z3.And(size == length, *same)))  # pyright: ignore[reportArgumentType]
         return None
 
 
@@ -724,7 +721,10 @@ def _reduce_values(
         variable = exploration.inputs[name]
         own = [each for each in conditions if name in solving.find_traits(each).names]
         tied = derived & frozenset().union(*(solving.find_traits(each).names for each in own))
-        for value in _list_simple(variable, model[name]):
+        simpler = _list_simple(variable, model[name])
+        if _lies_past_end(exploration.inputs, model, name):
+            simpler = iter((0,))
+        for value in simpler:
             if value == model[name]:
                 break
             if time.monotonic() > deadline:
@@ -736,6 +736,15 @@ def _reduce_values(
             if solving.holds(own, trial):
                 model.update(trial)
                 break
+
+
+def _lies_past_end(inputs: Mapping[str, SymbolicInput], model: Mapping[str, int], name: str) -> bool:
+    """Whether an array or a text ends before an element."""
+    for index in _INDEX.finditer(name):
+        size = name[: index.start()] + ".size"
+        if size in inputs and int(index[0][1:-1]) >= model.get(size, 0):
+            return True
+    return False
 
 
 def _list_simple(variable: SymbolicInput, current: int) -> Iterator[int]:

@@ -20,17 +20,20 @@ from .answers import CallbackAnswer, Example, ValuesReport
 from .evaluate import Evaluated, evaluate
 from .harness.callbacks import CppCallback, list_callbacks
 from .harness.compile import CannotCompile
+from .harness.fuzzing import fuzz
 from .harness.interfaces import Definitions, list_constants
 from .harness.replay import Replayed, is_confirmed
 from .harness.session import HarnessSession, PreparedCallback, is_asked
 from .ir.explore import explore
-from .outcomes import Bounds, CodeLine, Exploration, Witness
+from .outcomes import Bounds, CodeLine, Exploration, InputKind, Reaction, Witness
 from .python.explore import CallbackCode, explore_callback
 from .python.messages import Messages
 from .python.modules import ModuleCode
 from .python.replay import ReplayPlace, list_folders, replay_witness
+from .witnesses import WitnessRecord, format_publish_command, write_tests
 
 KINDS = ("subscriber", "service", "timer", "action")
+_ANY_NUMBER = (InputKind.INTEGER, 64, False)
 Progress = Callable[[int, int], None]
 
 
@@ -48,8 +51,8 @@ class Asked(NamedTuple):
 
 @dataclass
 class _Target:
-    """A callback that can be explored. prepared: its harness; code: of a Python one; types: of messages that it has to do
-    with, known once it was explored."""
+    """A callback that can be explored. prepared: its harness; code: of a Python one; types: of messages that it has
+    to do with, known once it was explored."""
 
     answer: CallbackAnswer
     names: Mapping[str, Mapping[int, str]]
@@ -66,10 +69,12 @@ class Survey:
         self._definitions = Definitions(workspace)
 
     def explore(
-        self, asked: Asked, *, replays: bool = False, jobs: int = 1, progress: Progress | None = None
-    ) -> ValuesReport:
+        self, asked: Asked, *, replays: bool = False, fuzz_seconds: float = 0.0, jobs: int = 1,
+        progress: Progress | None = None,
+    ) -> ValuesReport:  # fmt: skip
         """What was found out about the callbacks that are asked for, in the order of their places. replays: whether
-        examples are run for real, which compiles and runs code of the workspace, apart from this process."""
+        examples are run for real, which compiles and runs code of the workspace, apart from this process. fuzz_seconds:
+        for which each C++ callback is fuzzed besides; 0 for not."""
         found: list[CallbackAnswer] = []
         offline: list[bool] = []
         with HarnessSession(self.root, self.workspace, self.graph, self.bounds) as session:
@@ -85,11 +90,63 @@ class Survey:
                 if replays and answer.examples:
                     answer, is_offline = self._replay(target, answer)
                     offline.append(is_offline)
+                if fuzz_seconds and target.prepared is not None:
+                    answer = _fuzz(target.prepared, answer, fuzz_seconds)
                 found[number] = answer
                 if progress is not None:
                     progress(done, len(ready))
         found.sort(key=lambda one: (one.path, one.line, one.callback))
         return ValuesReport(tuple(found), self.bounds, replays, all(offline) if offline else None)
+
+    def replay(self, records: Sequence[WitnessRecord]) -> list[tuple[WitnessRecord, Replayed]]:
+        """Runs recorded witnesses for real, as explore() does with its own. Those whose callback is not there any
+        longer, or cannot be compiled, are unknown, with the reason."""
+        found: list[tuple[WitnessRecord, Replayed]] = []
+        with HarnessSession(self.root, self.workspace, self.graph, self.bounds) as session:
+            for record in records:
+                asked = Asked(callbacks=(record.callback,), kinds=(record.kind,))
+                rows = [*self._list_cpp(session, asked), *self._list_python(asked)]
+                target = next((one for one in rows if one.answer.path == record.path), rows[0] if rows else None)
+                if target is None:
+                    seen = Replayed(Reaction.UNKNOWN, reason=f"no callback {record.callback} in {record.path}")
+                elif target.answer.reason:
+                    seen = Replayed(Reaction.UNKNOWN, reason=target.answer.reason)
+                else:
+                    seen = self._replay_one(target, record.witness)
+                found.append((record, seen))
+        return found
+
+    def _replay_one(self, target: _Target, witness: Witness) -> Replayed:
+        if target.prepared is not None:
+            try:
+                return target.prepared.replay([witness])[0]
+            except CannotCompile as error:
+                return Replayed(Reaction.UNKNOWN, reason=str(error))
+        assert target.code is not None
+        messages = self._make_messages()
+        # A short look tells which messages the callback has to do with, and what its members are.
+        known = explore_callback(target.code, messages, self._modules.get, replace(self.bounds, paths=50, seconds=5.0))
+        kinds = {name: (one.kind, one.bits, one.is_signed) for name, one in known.inputs.items()}
+        target.types = tuple(messages.asked)
+        return self._replay_python(target, witness, Example(witness.result, witness.values, kinds))
+
+    def emit_klee(self, asked: Asked, folder: Path) -> list[Path]:
+        """Writes the harnesses of the C++ callbacks that are asked for, for KLEE; gives their folders."""
+        made: list[Path] = []
+        with HarnessSession(self.root, self.workspace, self.graph, self.bounds) as session:
+            for number, target in enumerate(self._list_cpp(session, asked)):
+                if target.prepared is not None and not target.answer.reason:
+                    name = "".join(each if each.isalnum() else "_" for each in target.answer.callback)
+                    made.append(target.prepared.emit_klee(folder / f"{number:02d}_{name}").folder)
+        return made
+
+    def write_tests(self, records: Sequence[WitnessRecord]) -> dict[str, str]:
+        """Regression tests for witnesses, by file name."""
+        return write_tests(self._definitions, records)
+
+    def write_commands(self, records: Sequence[WitnessRecord]) -> list[str]:
+        """Commands that send witnesses to a running node."""
+        return [command for one in records if (command := format_publish_command(self._definitions, one))]
 
     def list_places(self, files: Collection[str]) -> frozenset[tuple[str, int]]:
         """Where callbacks of some files are given to the framework."""
@@ -199,6 +256,41 @@ class Survey:
 
 def _get_file(callback: CppCallback) -> str:
     return callback.function.source.path if callback.function is not None else callback.path
+
+
+def _fuzz(prepared: PreparedCallback, answer: CallbackAnswer, seconds: float) -> CallbackAnswer:
+    """An answer with the crashes that a fuzzer found besides."""
+    try:
+        crashes = fuzz(prepared, seconds)
+    except CannotCompile as error:
+        return replace(answer, assumed=(*answer.assumed, f"not fuzzed: {error}"))
+    known = {(one.crash, one.place.line) for one in answer.examples}
+    kinds = dict(next((one.kinds for one in answer.examples), {}))
+    more = [
+        Example(
+            Reaction.CRASH, one.witness.values, {path: kinds.get(path, _ANY_NUMBER) for path in one.witness.values},
+            one.witness.crash, one.witness.place, "found by fuzzing", confirmed=True,
+        )
+        for one in crashes
+        if (one.witness.crash, one.witness.place.line) not in known
+    ]  # fmt: skip
+    counts = dict(answer.counts)
+    if more:
+        counts[Reaction.CRASH] = counts.get(Reaction.CRASH, 0) + len(more)
+    return replace(answer, examples=(*more, *answer.examples), counts=counts)
+
+
+def make_records(report: ValuesReport) -> list[WitnessRecord]:
+    """The examples of a report as records that can be written to a file."""
+    return [
+        WitnessRecord(
+            one.kind, one.nodes[0] if one.nodes else "", one.topics[0] if one.topics else "", one.callback,
+            one.message_type, one.path, one.line,
+            Witness(dict(each.values), each.result, each.crash, each.place), one.language,
+        )
+        for one in report.callbacks
+        for each in one.examples
+    ]  # fmt: skip
 
 
 def _refuse(callback: CppCallback) -> str:

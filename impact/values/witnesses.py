@@ -99,9 +99,12 @@ def _parse_row(row: dict[str, Any]) -> WitnessRecord:
         values[path] = bits
     crash = CrashKind(row["crash"]) if row["crash"] is not None else None
     place = CodeLine(_check_text(row["place"]["path"]), int(row["place"]["line"]))
-    texts = [_check_text(row[key]) for key in ("kind", "node", "topic", "callback", "message_type", "path")]
+    kind, node, topic, callback, message_type, path = (
+        _check_text(row[key]) for key in ("kind", "node", "topic", "callback", "message_type", "path")
+    )
     witness = Witness(values, Reaction(row["result"]), crash, place)
-    return WitnessRecord(*texts, int(row["line"]), witness, _check_text(row.get("language", "cpp")))
+    language = _check_text(row.get("language", "cpp"))
+    return WitnessRecord(kind, node, topic, callback, message_type, path, int(row["line"]), witness, language)
 
 
 def _check_text(text: object) -> str:
@@ -113,7 +116,9 @@ def _check_text(text: object) -> str:
 # Messages
 
 
-def build_message(interfaces: FindInterface, message_type: str, values: Mapping[str, int], root: str = "msg") -> dict[str, Any]:
+def build_message(
+    interfaces: FindInterface, message_type: str, values: Mapping[str, int], root: str = "msg"
+) -> dict[str, Any]:
     """A message `package/Name` as dictionaries, lists, numbers and texts, from the bits of its fields by path; fields
     without bits are zero. root: what the paths begin with; for a service `request`."""
     folder = "srv" if root == "request" else "action" if root == "goal" else "msg"
@@ -122,7 +127,14 @@ def build_message(interfaces: FindInterface, message_type: str, values: Mapping[
     return _build(interfaces, interface, package, values, root, 0)
 
 
-def _build(interfaces: FindInterface, interface: Interface | None, package: str, values: Mapping[str, int], path: str, depth: int) -> dict[str, Any]:
+def _build(
+    interfaces: FindInterface,
+    interface: Interface | None,
+    package: str,
+    values: Mapping[str, int],
+    path: str,
+    depth: int,
+) -> dict[str, Any]:
     if interface is None or not interface.sections or depth > 12:
         return {}
     return {
@@ -131,18 +143,23 @@ def _build(interfaces: FindInterface, interface: Interface | None, package: str,
     }
 
 
-def _build_field(interfaces: FindInterface, field: Field, package: str, values: Mapping[str, int], path: str, depth: int) -> Any:
+def _build_field(
+    interfaces: FindInterface, field: Field, package: str, values: Mapping[str, int], path: str, depth: int
+) -> Any:
     plain = field.type.partition("<=")[0]
     if not field.array:
         return _build_one(interfaces, plain, package, values, path, depth)
     fixed = _FIXED.fullmatch(field.array)
     count = int(fixed[1]) if fixed is not None else values.get(f"{path}.size", 0)
     return [
-        _build_one(interfaces, plain, package, values, f"{path}[{at}]", depth) for at in range(min(count, _ARRAY_AT_MOST))
+        _build_one(interfaces, plain, package, values, f"{path}[{at}]", depth)
+        for at in range(min(count, _ARRAY_AT_MOST))
     ]
 
 
-def _build_one(interfaces: FindInterface, plain: str, package: str, values: Mapping[str, int], path: str, depth: int) -> Any:
+def _build_one(
+    interfaces: FindInterface, plain: str, package: str, values: Mapping[str, int], path: str, depth: int
+) -> Any:
     bits = values.get(path, 0)
     if plain in _FLOATS:
         form, size = _FLOATS[plain]
@@ -188,7 +205,13 @@ def format_yaml(value: Any) -> str:
         return text.replace("e", ".0e") if "e" in text and "." not in text else text
     if isinstance(value, str):
         shown = "".join(
-            f"\\{c}" if c in '"\\' else c if " " <= c <= "~" else f"\\x{ord(c):02x}" if ord(c) < 256 else f"\\u{ord(c):04x}"
+            f"\\{c}"
+            if c in '"\\'
+            else c
+            if " " <= c <= "~"
+            else f"\\x{ord(c):02x}"
+            if ord(c) < 256
+            else f"\\u{ord(c):04x}"
             for c in value
         )
         return f'"{shown}"'
@@ -282,10 +305,12 @@ def _write_gtest(interfaces: FindInterface, records: Sequence[WitnessRecord]) ->
     )
     lines = ["// Messages that callbacks once could not handle; written by rosimpact.",
              "// Start the node under test beside it, as launch_testing and rostest do.",
-             "#include <array>", "#include <chrono>", "#include <limits>", "#include <thread>", "#include <gtest/gtest.h>",
+             "#include <array>", "#include <chrono>", "#include <limits>", "#include <thread>",
+             "#include <gtest/gtest.h>",
              "#include <rclcpp/rclcpp.hpp>" if ros2 else "#include <ros/ros.h>",
              *(f"#include <{each}>" for each in headers), "",
-             "template <class T> auto resize_array(T & array, size_t size) -> decltype(array.resize(size)) { array.resize(size); }",
+             "template <class T>", "auto resize_array(T & array, size_t size) -> decltype(array.resize(size))",
+             "{", "  array.resize(size);", "}",
              "template <class T, size_t N> void resize_array(std::array<T, N> &, size_t) {}",
              *([] if ros2 else ["template <class T, size_t N> void resize_array(boost::array<T, N> &, size_t) {}"]),
              ""]  # fmt: skip
@@ -321,7 +346,9 @@ def _assign(target: str, value: Any, ros2: bool) -> list[str]:
     if isinstance(value, str):
         shown = "".join(f"\\{ord(c) & 255:03o}" if c in '"\\?' or not " " <= c <= "~" else c for c in value)
         return [f'{target}.assign("{shown}", {len(value)});'] if value else []
-    return [f"{target} = static_cast<decltype({target})>({value}{'ULL' if value > 2**63 - 1 else 'LL'});"] if value else []
+    return (
+        [f"{target} = static_cast<decltype({target})>({value}{'ULL' if value > 2**63 - 1 else 'LL'});"] if value else []
+    )
 
 
 def _send_ros2(record: WitnessRecord, type_: str) -> list[str]:
@@ -339,7 +366,8 @@ def _send_ros2(record: WitnessRecord, type_: str) -> list[str]:
 def _send_ros1(record: WitnessRecord, type_: str) -> list[str]:
     return [
         "  ros::NodeHandle node;", f'  ros::Publisher publisher = node.advertise<{type_}>("{record.topic}", 10);',
-        "  for (int turn = 0; turn < 100 && publisher.getNumSubscribers() == 0; ++turn) ros::WallDuration(0.1).sleep();",
+        "  for (int turn = 0; turn < 100 && publisher.getNumSubscribers() == 0; ++turn)",
+        "    ros::WallDuration(0.1).sleep();",
         "  ASSERT_GT(publisher.getNumSubscribers(), 0u);", "  publisher.publish(message);",
         "  ros::WallDuration(2.0).sleep();", "  EXPECT_GT(publisher.getNumSubscribers(), 0u);",
     ]  # fmt: skip

@@ -7,7 +7,6 @@ import struct
 from pathlib import Path
 
 import pytest
-
 from rosimpact.impact.analysis.session import open_tree
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.flow.workspace import link_for_flow, make_graph
@@ -17,7 +16,8 @@ from rosimpact.impact.values.outcomes import NOWHERE, Bounds, Reaction, Witness
 
 needs_clang = pytest.mark.skipif(not find_clang(), reason="clang 15 or newer is not installed")
 needs_compiler = pytest.mark.skipif(
-    not find_clang() or not find_native_compiler(), reason="clang 15 or newer, or a compiler with sanitizers, is missing"
+    not find_clang() or not find_native_compiler(),
+    reason="clang 15 or newer, or a compiler with sanitizers, is missing",
 )
 needs_fuzzer = pytest.mark.skipif(
     not find_clang() or not find_native_compiler() or not find_fuzzer(), reason="clang with libFuzzer is not installed"
@@ -49,7 +49,9 @@ ament_package()
 """
 
 
-def write_workspace(root: Path, ros: int, files: dict[str, str], sources: str, messages: dict[str, str] | None = None) -> Path:
+def write_workspace(
+    root: Path, ros: int, files: dict[str, str], sources: str, messages: dict[str, str] | None = None
+) -> Path:
     """A workspace of one package `machine`. files: by path in the package; messages: definitions by name."""
     package = root / "machine"
     tool, client = ("catkin", "roscpp") if ros == 1 else ("ament_cmake", "rclcpp")

@@ -1,11 +1,9 @@
 """Each kind of crash, of a callback that is compiled as it is, shown by a native replay with its kind and line."""
 
 import pytest
-
+from harness_workspaces import Prepared, double, needs_compiler, text, write_workspace
 from rosimpact.impact.values.harness.replay import is_confirmed
 from rosimpact.impact.values.outcomes import CodeLine, CrashKind, Reaction, Witness
-
-from harness_workspaces import Prepared, double, needs_compiler, text, write_workspace
 
 NODE = """
 #include <ros/ros.h>

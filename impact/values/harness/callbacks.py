@@ -21,7 +21,8 @@ _DEEPEST = 4
 
 class ObservedMember(NamedTuple):
     """A member of a class or a variable outside of one. type: as written. value: its initialiser where that is a
-    literal. is_state: a function other than a constructor writes it. is_read: something besides the callback names it."""
+    literal. is_state: a function other than a constructor writes it. is_read: something besides the callback names
+    it."""
 
     name: str
     type: str
@@ -170,7 +171,9 @@ class ClassReader:
     def _changes(self, name: str, cls: Cls) -> bool:
         """Whether the field facts have it that something is put into a member."""
         paths = {fn.source.path for fn in self.code.list_functions(cls)}
-        makers = {(fn.source.path, fn.facts.line) for fn in self.code.list_functions(cls) if self.code.is_constructor(fn)}
+        makers = {
+            (fn.source.path, fn.facts.line) for fn in self.code.list_functions(cls) if self.code.is_constructor(fn)
+        }
         for path in paths & self._uses.keys():
             for function in self._uses[path].functions:
                 if (path, function.line) in makers:
@@ -199,7 +202,12 @@ class ClassReader:
         }
         found = []
         for row in source.facts.constants:
-            if not row.type or "const" in row.type.split() or "constexpr" in row.type or not row.name.replace("::", "").isidentifier():
+            if (
+                not row.type
+                or "const" in row.type.split()
+                or "constexpr" in row.type
+                or not row.name.replace("::", "").isidentifier()
+            ):
                 continue
             last = get_tail(row.name)
             found.append(_make_member(row, last in written, self._is_named_by_others(last, callback)))
@@ -250,6 +258,8 @@ def _spell_literal(value: FlowExpr | None) -> str:
     if value.kind == "list" and len(value.parts) == 1:
         return _spell_literal(value.parts[0])
     if value.kind == "text":
-        shown = "".join(f"\\{ord(c):03o}" if c in '"\\' or not " " <= c <= "~" else c for c in value.text if ord(c) < 256)
+        shown = "".join(
+            f"\\{ord(c):03o}" if c in '"\\' or not " " <= c <= "~" else c for c in value.text if ord(c) < 256
+        )
         return f'"{shown}"'
     return ""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import shutil
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -18,7 +18,7 @@ from ....edges.files import read_text, write_file
 from ....edges.groups import group_pairs
 from ..outcomes import Bounds
 from .facade import RUNTIME, find_facade, list_folders
-from .interfaces import Definitions, write_headers
+from .interfaces import KnownInterfaces, write_headers
 from .stubs import CompileError, StubTable, parse_errors
 from .toolchain import (
     NO_CLANG,
@@ -37,12 +37,12 @@ _HEADER_BYTES = 4_000_000
 _SYSTEM = ("/usr/include", "/usr/local/include")
 _HEADERS = (".h", ".hpp", ".hh", ".hxx", ".ipp", ".inl", ".tpp")
 CHECKS = (
-    "signed-integer-overflow,integer-divide-by-zero,float-cast-overflow,shift,bounds,null,return,unreachable,"
-    "vla-bound"
+    "signed-integer-overflow,integer-divide-by-zero,float-cast-overflow,shift,bounds,null,return,unreachable,vla-bound"
 )
 """The checks of UBSan that are crashes; the same for the executor and for replays."""
 _IR_FLAGS = (
-    "-S", "-emit-llvm", "-O1", "-gline-tables-only", "-fno-vectorize", "-fno-slp-vectorize", "-fno-unroll-loops", "-fno-jump-tables",
+    "-S", "-emit-llvm", "-O1", "-gline-tables-only", "-fno-vectorize", "-fno-slp-vectorize", "-fno-unroll-loops",
+    "-fno-jump-tables",
     "-fno-threadsafe-statics", "-fno-discard-value-names", "-DRI_SYMBOLIC=1", "-D_GLIBCXX_EXTERN_TEMPLATE=0",
     f"-fsanitize={CHECKS}", "-fno-sanitize-recover=all",
 )  # fmt: skip
@@ -83,10 +83,17 @@ class HarnessFiles(NamedTuple):
 
 class Workshop:
     """Compiles units of one workspace in a folder of its own. root: of the workspace; packages: folders of its
-    packages, relative to it; is_own: whether its code declares a name."""
+    packages, relative to it; is_own: whether its code declares a name in a scope."""
 
-    def __init__(self, root: Path, folder: Path, definitions: Definitions, packages: Iterable[str], bounds: Bounds,
-                 is_own: Callable[[str], bool] = lambda _: False):
+    def __init__(
+        self,
+        root: Path,
+        folder: Path,
+        definitions: KnownInterfaces,
+        packages: Iterable[str],
+        bounds: Bounds,
+        is_own: Callable[[str, str], bool] = lambda scope, name: False,
+    ):
         self.root, self.folder, self.definitions, self.bounds = root.resolve(), folder, definitions, bounds
         self.include = folder / "include"
         self.include.mkdir(parents=True, exist_ok=True)
@@ -112,7 +119,7 @@ class Workshop:
         )  # fmt: skip
         return group_pairs((path.name, path) for path in found)
 
-    def _provide(self, header: str, unit: SourceUnit) -> None:
+    def _make_header(self, header: str, unit: SourceUnit) -> None:
         """Makes a header that is not found."""
         if header.startswith("/") or ".." in header.split("/"):
             unit.missing.append(header)
@@ -173,7 +180,7 @@ class Workshop:
                 return
             for header in new:
                 seen.add(header)
-                self._provide(header, unit)
+                self._make_header(header, unit)
 
     def _is_wanted(self, path: str, unit: SourceUnit) -> bool:
         """Whether a header is not there, or is one of ROS that is installed and stands in the way of ours."""
@@ -205,7 +212,8 @@ class Workshop:
         folders = [str(self.include), *map(str, list_folders(self.definitions.ros))]
         flags = [
             "-x", "c++", f"-std=gnu++{unit.standard}", "-w", "-fno-access-control", f"-DRI_ROS={self.definitions.ros}",
-            f"-DRI_TEXT={self.bounds.text}", f"-DRI_ARRAY={self.bounds.array}", "-D_GLIBCXX_ASSERTIONS", "-D_GNU_SOURCE",
+            f"-DRI_TEXT={self.bounds.text}", f"-DRI_ARRAY={self.bounds.array}", "-D_GLIBCXX_ASSERTIONS",
+            "-D_GNU_SOURCE",
             "-U_FORTIFY_SOURCE", "-UNDEBUG",
         ]  # fmt: skip
         flags += [f"-D{each}" for each in unit.definitions]
@@ -226,7 +234,7 @@ class Workshop:
         lines = self._lines[path]
         return lines[number - 1] if 0 < number <= len(lines) else ""
 
-    def prepare(self, unit: SourceUnit, write: Callable[[Iterable[str]], SourceUnit] | None = None) -> Path:
+    def prepare(self, unit: SourceUnit, write: Callable[[Collection[str]], SourceUnit] | None = None) -> Path:
         """Makes a unit compile: provides headers, stands for what these declare, and leaves parts out that do not
         compile. write: the unit without some of its parts. Gives its path. Raises CannotCompile."""
         clang = find_clang()
@@ -251,7 +259,7 @@ class Workshop:
             first = next((each for each in errors if each.path != str(path)), errors[0])
             if missing:
                 for each in missing:
-                    self._provide(each.text.split("'")[1], unit)
+                    self._make_header(each.text.split("'")[1], unit)
                 self._find_headers(unit, clang, path)
                 continue
             if unit.boost and any("/boost/" in each.path and not each.path.startswith(str(RUNTIME)) for each in errors):
@@ -291,7 +299,7 @@ class Workshop:
         base = self._list_flags(unit)
         made = self._find_precompiled(unit, clang)
         if made is not None:
-            base[base.index("-include"):base.index("-include")] = ["-include-pch", str(made)]
+            base[base.index("-include") : base.index("-include")] = ["-include-pch", str(made)]
         command = [clang, *base, *_IR_FLAGS, *flags, str(path), "-o", "harness.ll"]
         return run_compiler(command, path.parent)
 
@@ -342,10 +350,18 @@ class Workshop:
         compiler = find_fuzzer()
         if not compiler:
             raise CannotCompile(NO_FUZZER)
-        flags = ("-O1", "-g", "-fno-omit-frame-pointer", f"-fsanitize=fuzzer,address,{CHECKS}", "-fno-sanitize-recover=all")
+        flags = (
+            "-O1",
+            "-g",
+            "-fno-omit-frame-pointer",
+            f"-fsanitize=fuzzer,address,{CHECKS}",
+            "-fno-sanitize-recover=all",
+        )
         return self._build(units, compiler, flags, RUNTIME / "fuzz.cpp", "fuzz")
 
-    def _build(self, units: Sequence[SourceUnit], compiler: str, flags: Sequence[str], runtime: Path, name: str) -> Path:
+    def _build(
+        self, units: Sequence[SourceUnit], compiler: str, flags: Sequence[str], runtime: Path, name: str
+    ) -> Path:
         folder = self.folder / units[0].name
         program = folder / name
         if program.exists():
@@ -361,7 +377,9 @@ class Workshop:
                 raise CannotCompile(self._describe_run(run))
         made = folder / f"{name}_runtime.o"
         own = [each for each in flags if not each.startswith("-fsanitize=fuzzer")]
-        run = run_compiler([compiler, "-std=gnu++17", "-w", *own, f"-I{RUNTIME}", "-c", str(runtime), "-o", str(made)], folder)
+        run = run_compiler(
+            [compiler, "-std=gnu++17", "-w", *own, f"-I{RUNTIME}", "-c", str(runtime), "-o", str(made)], folder
+        )
         if run.status != 0:
             raise CannotCompile(self._describe_run(run))
         link = [compiler, *flags, *objects, str(made), "-o", str(program), "-pthread", "-Wl,--no-demangle"]
@@ -405,8 +423,10 @@ class Workshop:
             "#!/bin/sh", "# Compiles the harness to bitcode and runs KLEE on it.", "set -e", 'cd "$(dirname "$0")"',
             'CLANG=${CLANG:-clang++}', 'LINK=${LLVM_LINK:-llvm-link}', "KLEE=${KLEE:-klee}",
             f'FLAGS="-Iinclude {_escape(quoted)} -fno-threadsafe-statics -O1 -Xclang -disable-llvm-passes -g"',
-            f'eval $CLANG $FLAGS -include ri_stubs.hpp -emit-llvm -c harness.cpp -fsanitize={CHECKS} -fno-sanitize-recover=all -o harness.bc',
-            f'eval $CLANG $FLAGS -DRI_KLEE_ENTRY={entry} ${{KLEE_INCLUDE:+-I$KLEE_INCLUDE}} -emit-llvm -c klee_runtime.cpp -o klee_runtime.bc',
+            f"CHECKS='-fsanitize={CHECKS} -fno-sanitize-recover=all'",
+            "eval $CLANG $FLAGS $CHECKS -include ri_stubs.hpp -emit-llvm -c harness.cpp -o harness.bc",
+            f'FLAGS="$FLAGS -DRI_KLEE_ENTRY={entry} ${{KLEE_INCLUDE:+-I$KLEE_INCLUDE}}"',
+            "eval $CLANG $FLAGS -emit-llvm -c klee_runtime.cpp -o klee_runtime.bc",
             "$LINK harness.bc klee_runtime.bc -o whole.bc",
             'exec $KLEE --libc=klee --max-time="${SECONDS_AT_MOST:-60}" --emit-all-errors whole.bc', "",
         ]  # fmt: skip

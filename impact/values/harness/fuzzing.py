@@ -26,7 +26,7 @@ class FuzzedCrash(NamedTuple):
     replayed: Replayed
 
 
-def fuzz(callback: PreparedCallback, seconds: float, entry: str = "") -> list[FuzzedCrash]:
+def run_fuzzer(callback: PreparedCallback, seconds: float, entry: str = "") -> list[FuzzedCrash]:
     """Fuzzes a callback for some time; gives a crash for each kind and line. Raises CannotCompile."""
     if callback.workshop is None or not callback.units:
         raise CannotCompile(callback.reason or "there is no harness")

@@ -68,12 +68,19 @@ class HarnessWriter:
                     blocks[block] = (first, len(lines))
                     names.append(entry)
                     entries.setdefault(number, []).append(HarnessEntry(entry, way, callback))
-        lines += ["", "extern \"C\" void ri_reset() { ri::phase = 0; ri::given = ri::last_given = nullptr; ri::prepare = nullptr; }"]
+        lines += [
+            "",
+            'extern "C" void ri_reset() {',
+            "  ri::phase = 0; ri::given = ri::last_given = nullptr; ri::prepare = nullptr;",
+            "}",
+        ]
         lines += ["struct RiEntry { const char *name; void (*run)(); };"]
         rows = "".join(f'{{"{each}", {each}}}, ' for each in names)
         lines += [f'extern "C" const RiEntry ri_entries[] = {{{rows}{{nullptr, nullptr}}}};', ""]
         standard, definitions = self.reader.find_standard(source)
-        unit = SourceUnit(name, "\n".join(lines), blocks, standard, definitions, (f"{self.root}/{source.rpartition('/')[0]}",))
+        unit = SourceUnit(
+            name, "\n".join(lines), blocks, standard, definitions, (f"{self.root}/{source.rpartition('/')[0]}",)
+        )
         return Harness(unit, entries, source)
 
     def write_further(self, name: str, source: str) -> SourceUnit:
@@ -100,11 +107,12 @@ class HarnessWriter:
         return known[:3] or [[]]
 
     def _has_main(self, path: str) -> bool:
-        return ("main" in {fn.name for fn in self.reader.code.functions_in.get(path, ())})
+        return "main" in {fn.name for fn in self.reader.code.functions_in.get(path, ())}
 
     def _write_waiting(self, callback: CppCallback) -> list[str]:
         return [
-            f'  ri::wanted_kind = "{callback.kind}"; ri::wanted_file = "{callback.path}"; ri::wanted_line = {callback.line};',
+            f'  ri::wanted_kind = "{callback.kind}"; ri::wanted_file = "{callback.path}";',
+            f"  ri::wanted_line = {callback.line};",
         ]
 
     def _run_main(self, callback: CppCallback) -> str:
@@ -114,7 +122,7 @@ class HarnessWriter:
         lines += ["  ri::prepare = &ri_prepare_RI_TAG_main;"]
         call = "ri_original_main" if self._has_main(site.source.path) else ""
         if not call:
-            return "\n".join([*lines, "  static_assert(false, \"no main\");", "}"])
+            return "\n".join([*lines, '  static_assert(false, "no main");', "}"])
         main = next(fn for fn in self.reader.code.functions_in[site.source.path] if fn.name == "main")
         given = "1, ri_arguments" if len(main.facts.parameters) >= 2 else ""
         lines += ['  static char ri_program[] = "node"; static char *ri_arguments[] = {ri_program, nullptr};']
@@ -129,7 +137,11 @@ class HarnessWriter:
         lines += [f"static {own} *ri_make_RI_TAG() {{"]
         if bases & set(_NODES) or "enable_shared_from_this" in bases:
             arguments = ", ".join(self._spell_argument(each) for each in types)
-            lines += [f"  static auto made = std::shared_ptr<{own}>(new {own}({arguments}));", "  return made.get();", "}"]
+            lines += [
+                f"  static auto made = std::shared_ptr<{own}>(new {own}({arguments}));",
+                "  return made.get();",
+                "}",
+            ]
         else:
             arguments = ", ".join(self._spell_argument(each) for each in types)
             lines += [f"  return new {own}({arguments});" if arguments else f"  return new {own}();", "}"]
@@ -148,7 +160,10 @@ class HarnessWriter:
         found = []
         name = get_tail(self._find_outer(site).name)
         if "LifecycleNode" in bases:
-            found += ["node->on_configure(rclcpp_lifecycle::State(1));", "node->on_activate(rclcpp_lifecycle::State(2));"]
+            found += [
+                "node->on_configure(rclcpp_lifecycle::State(1));",
+                "node->on_activate(rclcpp_lifecycle::State(2));",
+            ]
             if name in ("on_configure", "on_activate"):
                 return found
         if name in (cls.parts[-1], "main"):
@@ -158,7 +173,9 @@ class HarnessWriter:
         if self.reader.has_method(cls, "onInit") and name != "onInit":
             found.append("node->onInit();")
         outer = self._find_outer(site)
-        arguments = ", ".join(self._spell_argument(each.type) for each in outer.facts.parameters if each.default is None)
+        arguments = ", ".join(
+            self._spell_argument(each.type) for each in outer.facts.parameters if each.default is None
+        )
         return [*found, "ri::deliver();", f"node->{name}({arguments});"]
 
     def _find_outer(self, fn: Fn) -> Fn:
@@ -192,7 +209,9 @@ class HarnessWriter:
             cls = self.reader.find_class(callback.site)
             members = self.reader.list_members(cls, callback.function) if cls is not None else []
             lines += _write_state(members, "node->", "this.", every=False)
-        lines += _write_state(self.reader.list_variables(callback.path, callback.function), "::", "global.", every=False)
+        lines += _write_state(
+            self.reader.list_variables(callback.path, callback.function), "::", "global.", every=False
+        )
         return [*lines, "}"]
 
     def _write_bare(self, callback: CppCallback) -> Iterable[str]:
@@ -231,24 +250,44 @@ class HarnessWriter:
     def _spell_base(self, cls: Cls) -> str:
         bases = {get_tail(each) for each in self.reader.list_bases(cls)}
         if "LifecycleNode" in bases:
-            return 'static_assert(std::is_base_of<rclcpp_lifecycle::LifecycleNode, Node>::value); ri::make_base<rclcpp_lifecycle::LifecycleNode>(node, "node");'
+            return 'ri::make_base<rclcpp_lifecycle::LifecycleNode>(node, "node");'
         return 'ri::make_base<rclcpp::Node>(node, "node");' if self.ros == 2 and "Node" in bases else ""
 
     def _write_call(self, callback: CppCallback, call: str) -> list[str] | None:
         type_ = spell_type(callback.message_type, callback.kind, self.ros)
-        generic = "[&](auto &&...a) -> decltype({0}(std::forward<decltype(a)>(a)...)) {{ return {0}(std::forward<decltype(a)>(a)...); }}"
+        generic = (
+            "[&](auto &&...a) -> decltype({0}(std::forward<decltype(a)>(a)...)) {{ "
+            "return {0}(std::forward<decltype(a)>(a)...); }}"
+        )
         lines = [f"  auto call = {generic.format(call)};"]
         if callback.kind == "timer":
             event = "ros::TimerEvent" if self.ros == 1 else "ri::Info"
-            takes = f"std::is_invocable<decltype(call) &>::value || std::is_invocable<decltype(call) &, const {event} &>::value"
-            return [*lines, f'  static_assert({takes}, "not called by a timer alone");', f"  ri::run_timer<{event}>(call);"]
+            takes = (
+                "std::is_invocable<decltype(call) &>::value || "
+                f"std::is_invocable<decltype(call) &, const {event} &>::value"
+            )
+            return [
+                *lines,
+                f'  static_assert({takes}, "not called by a timer alone");',
+                f"  ri::run_timer<{event}>(call);",
+            ]
         if not type_:
             return None
         if callback.kind == "service":
             holder = "ros::ServiceHolder" if self.ros == 1 else "rclcpp::RiServiceHolder"
-            parts = (f"{type_}Request", f"{type_}Response") if self.ros == 1 else (f"{type_}::Request", f"{type_}::Response")
-            return [*lines, f"  {holder}<{parts[0]}, {parts[1]}, decltype(call)> holder{{call}};", "  holder.run(&holder);"]
-        lines.append(f'  static_assert(ri::takes_message<{type_}, decltype(call)>, "not called with the message alone");')
+            parts = (
+                (f"{type_}Request", f"{type_}Response")
+                if self.ros == 1
+                else (f"{type_}::Request", f"{type_}::Response")
+            )
+            return [
+                *lines,
+                f"  {holder}<{parts[0]}, {parts[1]}, decltype(call)> holder{{call}};",
+                "  holder.run(&holder);",
+            ]
+        lines.append(
+            f'  static_assert(ri::takes_message<{type_}, decltype(call)>, "not called with the message alone");'
+        )
         return [*lines, f'  auto made = ri::make_message<{type_}>("msg");', f"  ri::call_with<{type_}>(call, made);"]
 
 

@@ -27,15 +27,20 @@ _CPP = {
 }  # fmt: skip
 # genmsg makes a signed byte of it, and a bool a byte.
 _CPP_ROS1 = {**_CPP, "byte": "int8_t", "bool": "uint8_t"}
-_KEYWORDS = frozenset(
-    ["alignas", "alignof", "and", "asm", "auto", "bool", "break", "case", "catch", "char", "class", "const", "constexpr", "continue", "default", "delete", "do", "double", "else", "enum", "explicit", "export", "extern", "false", "float", "for", "friend", "goto", "if", "inline", "int", "long", "mutable", "namespace", "new", "noexcept", "not", "nullptr", "operator", "or", "private", "protected", "public", "register", "return", "short", "signed", "sizeof", "static", "struct", "switch", "template", "this", "throw", "true", "try", "typedef", "typename", "union", "unsigned", "using", "virtual", "void", "volatile", "while", "xor"]
-)
+_KEYWORDS = frozenset((
+    "alignas", "alignof", "and", "asm", "auto", "bool", "break", "case", "catch", "char", "class", "const",
+    "constexpr", "continue", "default", "delete", "do", "double", "else", "enum", "explicit", "export", "extern",
+    "false", "float", "for", "friend", "goto", "if", "inline", "int", "long", "mutable", "namespace", "new",
+    "noexcept", "not", "nullptr", "operator", "or", "private", "protected", "public", "register", "return", "short",
+    "signed", "sizeof", "static", "struct", "switch", "template", "this", "throw", "true", "try", "typedef",
+    "typename", "union", "unsigned", "using", "virtual", "void", "volatile", "while", "xor",
+))  # fmt: skip
 _SECTIONS = {"request": "Request", "response": "Response", "goal": "Goal", "result": "Result", "feedback": "Feedback"}
 _HEADER_1 = re.compile(r"(\w+)/(\w+)\.h")
 _HEADER_2 = re.compile(r"(\w+)/(msg|srv|action)/(?:detail/)?(\w+?)(?:__(?:struct|traits|builder|type_support))?\.hpp")
 
 
-class Definitions:
+class KnownInterfaces:
     """The interfaces of a workspace and of released packages."""
 
     def __init__(self, workspace: Workspace):
@@ -124,14 +129,14 @@ _ACTION_PARTS: dict[str, tuple[tuple[str, str], ...]] = {
 }  # fmt: skip
 
 
-def list_constants(definitions: Definitions, key: str) -> dict[str, tuple[str, str]]:
+def list_constants(definitions: KnownInterfaces, key: str) -> dict[str, tuple[str, str]]:
     """The constants of an interface, by name its type and value as written."""
     found = definitions.find(key)
     sections = found.sections if found is not None else ()
     return {one.name: (one.type, one.value) for section in sections for one in section.constants}
 
 
-def write_headers(definitions: Definitions, key: str) -> dict[str, str]:
+def write_headers(definitions: KnownInterfaces, key: str) -> dict[str, str]:
     """The headers of an interface and of those nested in it, by path. Those that are not known are not written."""
     found: dict[str, str] = {}
     left, seen = [key], set()
@@ -153,7 +158,7 @@ class _Writer1:
 
     types = _CPP_ROS1
 
-    def __init__(self, definitions: Definitions, key: str, interface: Interface):
+    def __init__(self, definitions: KnownInterfaces, key: str, interface: Interface):
         self.package, self.folder, self.name = key.split("/")
         self.definitions, self.interface = definitions, interface
         self.nested: list[str] = []
@@ -170,7 +175,10 @@ class _Writer1:
             )
             for part in ("Request", "Response"):
                 yield f"{here}{part}.h", f"#pragma once\n#include <{here}.h>\n"
-        yield f"{here}.h", f"#pragma once\n#include <ros/ri_message.h>\n{includes}namespace {self.package} {{\n{body}}}\n"
+        yield (
+            f"{here}.h",
+            f"#pragma once\n#include <ros/ri_message.h>\n{includes}namespace {self.package} {{\n{body}}}\n",
+        )
 
     def name_struct(self, section: Section) -> str:
         return self.name + ("" if self.folder == "msg" else _SECTIONS.get(section.name, ""))
@@ -270,7 +278,9 @@ class _Writer2(_Writer1):
         if self.folder == "msg":
             body = "".join(self.write_struct(self.name, section) for section in self.interface.sections[:1])
         else:
-            names = {section.name: f"{self.name}_{_SECTIONS.get(section.name, '')}" for section in self.interface.sections}
+            names = {
+                section.name: f"{self.name}_{_SECTIONS.get(section.name, '')}" for section in self.interface.sections
+            }
             body = "".join(self.write_struct(names[one.name], one) for one in self.interface.sections)
             uses = "".join(f" using {_SECTIONS.get(part, part)} = {name};" for part, name in names.items())
             mark = "ri_is_service" if self.folder == "srv" else "ri_is_action"
@@ -347,7 +357,7 @@ def _write_number(text: str, type_: str) -> str:
     if text.lower() in ("true", "false"):
         return f"static_cast<{type_}>({text.lower()})"
     if _NUMBER.fullmatch(text) is None:
-        special = {"nan": "__builtin_nan(\"\")", "inf": "__builtin_inf()", "-inf": "-__builtin_inf()"}
+        special = {"nan": '__builtin_nan("")', "inf": "__builtin_inf()", "-inf": "-__builtin_inf()"}
         return f"static_cast<{type_}>({special[text.lower()]})" if text.lower() in special else ""
     if type_ in ("float", "double", "long double"):
         return f"static_cast<{type_}>({text})"

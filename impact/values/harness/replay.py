@@ -10,9 +10,11 @@ import os
 import re
 import resource
 import shutil
+import signal
 import subprocess
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -29,7 +31,9 @@ _UNKNOWN, _IMPOSSIBLE, _ENDLESS = 77, 78, 79
 _FRAME = re.compile(r"^\s*#\d+ 0x[0-9a-f]+ in (?P<function>.*?) (?P<path>/[^:\s]+):(?P<line>\d+)", re.MULTILINE)
 _RUNTIME_ERROR = re.compile(r"^(?P<path>[^\s:]+):(?P<line>\d+):\d+: runtime error: (?P<text>.*)$", re.MULTILINE)
 _ASSERTION = re.compile(r"(?P<path>[^\s:]+):(?P<line>\d+): .*?: Assertion [`'](?P<text>.*)' failed")
-_THROWN = re.compile(r"terminate called after throwing an instance of '(?P<type>[^']*)'(?:\s*what\(\):\s*(?P<what>.*))?")
+_THROWN = re.compile(
+    r"terminate called after throwing an instance of '(?P<type>[^']*)'(?:\s*what\(\):\s*(?P<what>.*))?"
+)
 _ADDRESS = re.compile(r"ERROR: AddressSanitizer: (?P<kind>[\w-]+)(?P<rest>[^\n]*)")
 _NEAR_NULL = re.compile(r"unknown address 0x0000000(?P<address>[0-9a-f]+)")
 
@@ -89,7 +93,9 @@ def find_isolation() -> tuple[str, ...]:
     return ()
 
 
-def replay(program: Path, entry: str, witnesses: Sequence[Mapping[str, int]], root: Path, seconds: int = SECONDS) -> list[Replayed]:
+def replay(
+    program: Path, entry: str, witnesses: Sequence[Mapping[str, int]], root: Path, seconds: int = SECONDS
+) -> list[Replayed]:
     """Runs an entry of a program for each of some inputs (path to bits). root: of the workspace, for lines."""
     if not witnesses:
         return []
@@ -105,7 +111,13 @@ def replay(program: Path, entry: str, witnesses: Sequence[Mapping[str, int]], ro
         return [found.get(at, outside)._replace(is_isolated=bool(isolation)) for at in range(len(witnesses))]
 
 
-def run_limited(command: Sequence[str], folder: Path, seconds: float, settings: Mapping[str, str] | None = None, out: Path | None = None) -> str:
+def run_limited(
+    command: Sequence[str],
+    folder: Path,
+    seconds: float,
+    settings: Mapping[str, str] | None = None,
+    out: Path | None = None,
+) -> str:
     """Runs a program within limits; gives why it did not end by itself. settings: of its environment, besides what
     the sanitizers need. out: the file that its errors are written to."""
     environment = {
@@ -134,12 +146,8 @@ def run_limited(command: Sequence[str], folder: Path, seconds: float, settings: 
 
 def _end_group(process: subprocess.Popen) -> None:
     """Ends a program with all that it started."""
-    import signal
-
-    try:
+    with suppress(ProcessLookupError, PermissionError):
         os.killpg(process.pid, signal.SIGKILL)
-    except (ProcessLookupError, PermissionError):
-        pass
     process.wait()
 
 
@@ -222,7 +230,9 @@ def _judge(case: _Case, errors: str, root: Path) -> Replayed:
         return Replayed(Reaction.UNKNOWN, None, NOWHERE, "", *shown, reason="cannot happen", begun=case.begun)
     kind, place, detail = classify_crash(errors, case.status == _ENDLESS, root)
     if not case.begun:
-        return Replayed(Reaction.UNKNOWN, kind, place, detail, *shown, reason="ended before the callback began", begun=False)
+        return Replayed(
+            Reaction.UNKNOWN, kind, place, detail, *shown, reason="ended before the callback began", begun=False
+        )
     return Replayed(Reaction.CRASH, kind, place, detail, *shown)
 
 
@@ -236,7 +246,11 @@ def classify_crash(errors: str, is_endless: bool, root: Path) -> tuple[CrashKind
         return _classify_runtime_error(found["text"]), here or place, found["text"]
     if (found := _ASSERTION.search(errors)) is not None:
         own = _make_line(found["path"], int(found["line"]), root)
-        kind = CrashKind.ASSERTION if "bits/" not in found["path"] and "/c++/" not in found["path"] else classify_condition(found["text"])
+        kind = (
+            CrashKind.ASSERTION
+            if "bits/" not in found["path"] and "/c++/" not in found["path"]
+            else classify_condition(found["text"])
+        )
         return kind, own or place, found["text"]
     if (found := _THROWN.search(errors)) is not None:
         return CrashKind.EXCEPTION, place, ": ".join(filter(None, (found["type"], (found["what"] or "").strip())))

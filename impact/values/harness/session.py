@@ -17,7 +17,7 @@ from ..outcomes import Bounds, Witness
 from .callbacks import ClassReader, CppCallback, list_cpp_callbacks
 from .compile import CannotCompile, HarnessFiles, SourceUnit, Workshop
 from .generate import Harness, HarnessEntry, HarnessWriter
-from .interfaces import Definitions, list_constants
+from .interfaces import KnownInterfaces, list_constants
 from .replay import SECONDS, Replayed, replay
 from .toolchain import NO_CLANG, find_clang
 
@@ -87,15 +87,18 @@ class HarnessSession:
         if folder is None:
             folder = Path(self._stack.enter_context(tempfile.TemporaryDirectory(prefix="rosimpact-values-")))
         self.bounds = bounds or Bounds()
-        self.definitions = Definitions(workspace)
+        self.definitions = KnownInterfaces(workspace)
         self.workspace, self.graph = workspace, graph
         packages = [package.path for package in workspace]
         self.workshop = Workshop(root, folder, self.definitions, packages, self.bounds, self._is_own)
         self._further: dict[str, tuple[SourceUnit, str] | str] = {}
 
-    def _is_own(self, name: str) -> bool:
+    def _is_own(self, scope: str, name: str) -> bool:
         code = self.reader.code
-        return name in code.classes or name in code.by_tail
+        if not scope:
+            return name in code.classes or name in code.by_tail
+        found = (*code.classes.get(name, ()), *code.by_tail.get(name, ()))
+        return any(_ends_like(each.name, f"{scope}::{name}", "::") for each in found)
 
     def __enter__(self) -> HarnessSession:
         return self

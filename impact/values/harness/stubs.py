@@ -1,4 +1,4 @@
-"""What headers that are not here declare, as far as a file uses it: worked out of the compiler's errors, round by round.
+"""What headers that are not here declare, as far as a file uses it: worked out of the compiler's errors.
 
 Every name becomes something that takes any use (`ri::Anything`) and says in the callback that nothing is known of it.
 """
@@ -36,9 +36,11 @@ def parse_errors(output: str) -> list[CompileError]:
 
 class StubTable:
     """What is declared so far. read_line: a line of a file, counted from 1, empty where there is none. is_own: whether
-    the code itself declares a name, so that it is not for us to declare."""
+    the code itself declares a name in a scope, so that it is not for us to declare."""
 
-    def __init__(self, read_line: Callable[[str, int], str], is_own: Callable[[str], bool] = lambda _: False):
+    def __init__(
+        self, read_line: Callable[[str, int], str], is_own: Callable[[str, str], bool] = lambda scope, name: False
+    ):
         self._read_line, self._is_own = read_line, is_own
         # Scope and name to what it is: `namespace`, `type`, `template`, `function`, `variable`, `constant`.
         self._names: dict[tuple[str, str], str] = {}
@@ -56,7 +58,9 @@ class StubTable:
 
     def list_names(self) -> list[str]:
         """What is stood for, by its full name."""
-        return sorted(f"{scope}::{name}".lstrip(":") for (scope, name), kind in self._names.items() if kind != "namespace")
+        return sorted(
+            f"{scope}::{name}".lstrip(":") for (scope, name), kind in self._names.items() if kind != "namespace"
+        )
 
     def learn(self, errors: Sequence[CompileError]) -> bool:
         """Takes in what errors say; gives whether anything new came of them. What is wrong with a macro or a type has
@@ -85,7 +89,9 @@ class StubTable:
         if text.startswith("no type named"):
             return self._add_type(quoted[1], name, "type", "in namespace" in text)
         if text.startswith(("no template named", "no class template named")):
-            return self._add_type(quoted[1] if len(quoted) > 1 else "", name, "template", len(quoted) < 2 or "in namespace" in text)
+            return self._add_type(
+                quoted[1] if len(quoted) > 1 else "", name, "template", len(quoted) < 2 or "in namespace" in text
+            )
         if text.startswith("no member named") and len(quoted) > 1:
             if "in namespace" in text or "in the global namespace" in text:
                 return self._add_name(quoted[1], name, self._guess(error))
@@ -150,7 +156,11 @@ class StubTable:
             return "function" if behind.startswith("(") and not name[:1].isupper() else "template"
         if rest.startswith("("):
             return "type" if name[:1].isupper() and not name.isupper() else "function"
-        if rest.startswith("{") or re.match(r"(const\b\s*)?[&*]*\s*[A-Za-z_]\w*\s*[;=,({)\[]", rest) or re.match(r"[&*]+\s*[,>)]", rest):
+        if (
+            rest.startswith("{")
+            or re.match(r"(const\b\s*)?[&*]*\s*[A-Za-z_]\w*\s*[;=,({)\[]", rest)
+            or re.match(r"[&*]+\s*[,>)]", rest)
+        ):
             return "type"
         if re.match(r"(>|,)", rest) and re.search(r"<[^<>]*$", before) and name[:1].isupper():
             return "type"
@@ -164,7 +174,11 @@ class StubTable:
 
     def _add_name(self, scope: str, name: str, kind: str) -> bool:
         scope = _strip_arguments(scope).removeprefix("::")
-        if scope.partition("::")[0] in _OWN or not _NAME.fullmatch(name) or (self._is_own(name) and kind != "namespace"):
+        if (
+            scope.partition("::")[0] in _OWN
+            or not _NAME.fullmatch(name)
+            or (kind != "namespace" and self._is_own(scope, name))
+        ):
             return False
         if scope:
             self._add_namespace(scope)
@@ -207,7 +221,8 @@ class StubTable:
         if kind == "namespace":
             return f"namespace {name} {{ }}"
         if kind == "function":
-            return f'template <class... RiT, class... RiA> ri::Anything {name}(RiA &&...) {{ ri::unknown("{full}"); return {{}}; }}'
+            body = f'{{ ri::unknown("{full}"); return {{}}; }}'
+            return f"template <class... RiT, class... RiA> ri::Anything {name}(RiA &&...) {body}"
         if kind == "variable":
             return f"inline ri::Anything {name};"
         if kind == "constant":
@@ -223,9 +238,14 @@ class StubTable:
                 pointed = own.rpartition("::")[2] or "ri::Anything"
                 constant = "const " if "Const" in name else ""
                 made = "std::unique_ptr" if "Unique" in name else "std::shared_ptr" if name.endswith("Ptr") else ""
-                rows.append(f"using {name} = {made}<{constant}{pointed}>;" if made else f"struct {name} : ri::Anything {{ RI_STAND_IN({name}) }};")
+                rows.append(
+                    f"using {name} = {made}<{constant}{pointed}>;"
+                    if made
+                    else f"struct {name} : ri::Anything {{ RI_STAND_IN({name}) }};"
+                )
             elif kind == "function":
-                rows.append(f'template <class... RiM, class... RiB> static ri::Anything {name}(RiB &&...) {{ ri::unknown("{owner}::{name}"); return {{}}; }}')
+                body = f'{{ ri::unknown("{owner}::{name}"); return {{}}; }}'
+                rows.append(f"template <class... RiM, class... RiB> static ri::Anything {name}(RiB &&...) {body}")
             elif owner == "ri::Anything":
                 rows.append(f"static Anything {name};")
             else:

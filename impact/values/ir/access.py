@@ -62,6 +62,9 @@ def require_access(run: Machine, state: State, pointer: Any, size: int) -> Point
             raise run.make_crash(CrashKind.INDEX, f"byte {read_signed(offset, 64)} of {memory_object.size}")
     else:
         room = memory_object.size - size
+        span = run.ranges.find_span(offset)
+        if span.low >= 0 and span.high <= room:
+            return pointer
         run.require(state, reduce_term(z3.ULE(offset, room)) if room >= 0 else 0, CrashKind.INDEX, "")
     return pointer
 
@@ -70,9 +73,13 @@ def list_offsets(run: Machine, state: State, pointer: Pointer, size: int, alignm
     """The offsets that a pointer can have, as far as they are told apart cheaply."""
     memory_object = state.objects[pointer.object]
     step = max(1, min(16, max(alignment, 1 << min(4, count_trailing_zeros(pointer.offset)))))
-    found = range(0, memory_object.size - size + 1, step)
+    span = run.ranges.find_span(pointer.offset)
+    first, last = 0, memory_object.size - size
+    if span.low >= 0:
+        first, last = -(-span.low // step) * step, min(last, span.high)
+    found = range(first, last + 1, step)
     has_addresses = any(isinstance(value, Pointer | Code) for _, value in memory_object.cells.values())
-    if len(found) <= 4 or (not has_addresses and len(found) <= _MOST_OFFSETS):
+    if len(found) <= _MOST_OFFSETS and not has_addresses:
         return list(found)
     values = run.list_values(state, pointer.offset, 64, _FEW_OFFSETS)
     if values is None:

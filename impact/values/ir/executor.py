@@ -37,6 +37,7 @@ from .module import (
     NULL,
     UNDEFINED,
     Argument,
+    BytesConstant,
     Code,
     Composite,
     Computed,
@@ -46,13 +47,12 @@ from .module import (
     Instruction,
     Pointer,
     ReadingError,
-    BytesConstant,
     Zeros,
 )
 from .places import PlaceReader
 from .ranges import Ranges
 from .reader import FLOAT_OPERATIONS, INTEGER_OPERATIONS, Program
-from .solving import Model, SolverTimeout, Solving
+from .solving import Model, SolverTimeout, Solving, is_certain
 from .state import Frame, Raised, State, Visit
 from .terms import (
     add_offsets,
@@ -236,8 +236,7 @@ class Executor:
             self.solving.derived[path] = UnknownFunction(compute, tuple(arguments), bits)
             kind = InputKind.FLOAT64 if bits == 64 else InputKind.FLOAT32
             term = self.solving.make_input(path, kind, bits).term
-            if state.model is not None:
-                self.solving.settle(state.model, (path,))
+            self.solving.settle(state.model, (path,))
             state.values[key] = read_float_bits(term, bits)
         return state.values[key]
 
@@ -396,35 +395,34 @@ class Executor:
         if isinstance(opposite, int):
             state.taken = (*state.taken, not opposite)
             return not opposite
-        held = self.solving.evaluate(condition, state.model) if state.model is not None else None
-        if held not in (0, 1):
-            # Without a model, both sides are asked.
+        held = self.solving.evaluate(condition, state.model)
+        if not isinstance(held, int):
+            # The model leaves it open: a float that no integer holds, as an integer.
             model = self._ask(state, condition)
+            if model is _UNDECIDED:
+                raise self.make_unknown(_NO_ANSWER)
             if model is None:
                 self._note_known(state, condition, False)
                 state.taken = (*state.taken, False)
                 return False
             held = 1
-            if model is not _UNDECIDED and state.model is not None:
-                state.model.update(model)
+            state.model.update(model)
         first, second = (condition, opposite) if held == 1 else (opposite, condition)
         answer = held == 1
         other = self._ask(state, second)
-        if other is None:
-            self._note_known(state, condition, answer)
-        else:
+        if other is _UNDECIDED:
+            self._record(state, self.make_unknown(_NO_ANSWER), extra=second, model={})
+            self._add_condition(state, first)
+        elif other is not None:
             twin = state.fork()
             twin.replay = (*state.taken, not answer)
             twin.taken = ()
             self._add_condition(twin, second)
-            if other is _UNDECIDED:
-                twin.model = None
-            elif twin.model is not None:
-                twin.model.update(other)
+            twin.model.update(other)
+            self._note_known(twin, condition, not answer)
             self.pending.append(twin)
             self._add_condition(state, first)
-            self._note_known(twin, condition, not answer)
-            self._note_known(state, condition, answer)
+        self._note_known(state, condition, answer)
         state.taken = (*state.taken, answer)
         return answer
 
@@ -443,7 +441,7 @@ class Executor:
             return None
         related = self.solving.select_related(state.conditions, self.solving.find_traits(condition).names)
         try:
-            return self.solving.find_model([*related, condition], state.model or {})
+            return self.solving.find_model([*related, condition], state.model)
         except SolverTimeout:
             return _UNDECIDED
 
@@ -459,14 +457,13 @@ class Executor:
             return
         if known is False:
             raise Ended(None)
-        if state.model is None or self.solving.evaluate(condition, state.model) != 1:
+        if not is_certain(self.solving.evaluate(condition, state.model)):
             model = self._ask(state, condition)
             if model is None:
                 raise Ended(None)
             if model is _UNDECIDED:
-                state.model = None
-            elif state.model is not None:
-                state.model.update(model)
+                raise self.make_unknown(_NO_ANSWER)
+            state.model.update(model)
         self._add_condition(state, condition)
 
     def require(
@@ -493,10 +490,11 @@ class Executor:
             model = self._ask(state, failure)
             if model is None:
                 continue
-            self._record(
-                state, Ended(Reaction.CRASH, crash=kind, detail=detail), extra=failure,
-                model=None if model is _UNDECIDED or state.model is None else {**state.model, **model},
-            )  # fmt: skip
+            if model is _UNDECIDED:
+                self._record(state, self.make_unknown(_NO_ANSWER), extra=failure, model={})
+            else:
+                end = Ended(Reaction.CRASH, crash=kind, detail=detail)
+                self._record(state, end, extra=failure, model={**state.model, **model})
         self.assume(state, condition)
 
     def choose(self, state: State, term: Any, values: Sequence[int]) -> int:
@@ -520,7 +518,7 @@ class Executor:
             if not isinstance(value, int) or value in found:
                 try:
                     model = (
-                        self.solving.find_model([*conditions, *excluded], state.model or {})
+                        self.solving.find_model([*conditions, *excluded], state.model)
                         if (conditions or excluded)
                         else {}
                     )
@@ -540,10 +538,8 @@ class Executor:
         """A number that a term does not exceed; most if it may."""
         if isinstance(term, int):
             return min(term, most)
-        low = 0
-        if state.model is not None:
-            value = self.solving.evaluate(term, state.model)
-            low = min(value, most) if isinstance(value, int) else 0
+        value = self.solving.evaluate(term, state.model)
+        low = min(value, most) if isinstance(value, int) else 0
         high = most
         while low < high:
             middle = (low + high) // 2
@@ -553,7 +549,7 @@ class Executor:
             elif model is _UNDECIDED:
                 return most
             else:
-                value = self.solving.evaluate(term, {**(state.model or {}), **model})
+                value = self.solving.evaluate(term, {**(state.model), **model})
                 low = min(max(middle + 1, value if isinstance(value, int) else 0), most)
         return high
 
@@ -717,7 +713,7 @@ class Executor:
                     raise self.make_crash(CrashKind.ENDLESS, "")
             elif count <= 4:
                 model = self._ask(state, same)
-                if model is not None and model is not _UNDECIDED and state.model is not None:
+                if model is not None and model is not _UNDECIDED:
                     self._record(
                         state, Ended(Reaction.CRASH, crash=CrashKind.ENDLESS), extra=same,
                         model={**state.model, **model},
@@ -777,8 +773,6 @@ class Executor:
         if end.result is None:
             return
         conditions = tuple(state.conditions) if extra is None else (*state.conditions, extra)
-        if model is None and extra is None:
-            model = state.model
         result, reason, shown = end.result, end.reason, ()
         effects = state.effects
         if result is Reaction.IGNORED:
@@ -787,47 +781,29 @@ class Executor:
             result = Reaction.HANDLED if effects else Reaction.LOG_ONLY if state.logs else Reaction.IGNORED
             if result is not Reaction.HANDLED and state.notes:
                 result, reason = Reaction.UNKNOWN, f"what {state.notes[0]} does is not known"
-        if model is None and result is not Reaction.UNKNOWN:
-            model = self._find_whole_model(conditions)
-            if model is None:
-                result, reason = Reaction.UNKNOWN, "the solver found no input that leads here in time"
-            elif not model and conditions:
-                return
+        model = state.model if model is None else model
         names = frozenset().union(*(self.solving.find_traits(each).names for each in (*conditions, *shown)))
         assumed = dict.fromkeys(self.solving.assumed[name] for name in sorted(names) if name in self.solving.assumed)
         assumed.update(dict.fromkeys((*state.notes, *state.assumed_notes)))
         if not state.has_begun:
             self.early.append(len(self.exploration.paths))
         place = end.place or self.find_place(state)
+        if result is Reaction.CRASH and not place.path:
+            kind = end.crash.value if end.crash is not None else ""
+            result, reason = Reaction.UNKNOWN, f"{kind} outside of the workspace's code"
         if result in (Reaction.HANDLED, Reaction.LOG_ONLY, Reaction.IGNORED):
             place = NOWHERE
         self.exploration.paths.append(
             CallbackPath(
                 result, conditions, effects, state.logs, state.sent,
                 end.crash if result is Reaction.CRASH else None, place, end.detail, reason, tuple(assumed), shown,
-                {} if model is None else self._fill_model(model),
+                self._fill_model(model) if model else {},
             )
         )  # fmt: skip
 
     def _fill_model(self, model: Model) -> dict[str, int]:
+        """With the inputs that no condition speaks of."""
         return {path: model.get(path, 0) for path in self.solving.inputs}
-
-    def _find_whole_model(self, conditions: Sequence[z3.BoolRef]) -> dict[str, int] | None:
-        """A model of all conditions: part by part; None where the solver gives none in time, {} where none exists."""
-        left = list(conditions)
-        model: dict[str, int] = {"": 0}
-        while left:
-            part = self.solving.select_related(left, self.solving.find_traits(left[0]).names) or [left[0]]
-            try:
-                found = self.solving.find_model(part, model)
-            except SolverTimeout:
-                return None
-            if found is None:
-                return {}
-            model.update(found)
-            numbers = {each.get_id() for each in part}
-            left = [each for each in left if each.get_id() not in numbers]
-        return model
 
     def find_place(self, state: State) -> CodeLine:
         """The line of the workspace that runs: of the innermost frame that has one."""
@@ -854,25 +830,25 @@ class Executor:
     def _find_changed_members(self, state: State) -> tuple[list[Observable], tuple[z3.BoolRef, ...]]:
         """Members that may differ from before, and a condition under which one of them does (none, where one does in
         any case)."""
-        changed, conditions, is_certain = [], [], bool(state.effects)
+        changed, conditions, is_shown = [], [], bool(state.effects)
         for member in state.members:
             differs = self._compare_member(state, member)
             if isinstance(differs, int):
                 if differs:
-                    is_certain = True
+                    is_shown = True
                     changed.append(Observable("member", member.name, NOWHERE))
                 continue
-            if state.model is not None and self.solving.evaluate(differs, state.model) == 1:
+            if is_certain(self.solving.evaluate(differs, state.model)):
                 found: Any = {}
             else:
                 found = self._ask(state, differs)
             if found is None:
                 continue
-            if found is not _UNDECIDED and state.model is not None:
+            if found is not _UNDECIDED:
                 state.model.update(found)
             changed.append(Observable("member", member.name, NOWHERE))
             conditions.append(differs)
-        if is_certain or not conditions:
+        if is_shown or not conditions:
             return changed, ()
         return changed, (reduce_term(z3.Or(*conditions)) if len(conditions) > 1 else conditions[0],)
 
@@ -1513,6 +1489,7 @@ class Executor:
 
 
 _UNDECIDED: Any = object()
+_NO_ANSWER = "the solver gave no answer in time"
 
 
 def is_same_value(first: Any, second: Any) -> bool:

@@ -19,6 +19,7 @@ from .terms import (
     make_bits,
     make_float_bits,
     make_truth,
+    pack_float,
     read_float_bits,
     reduce_term,
 )
@@ -80,14 +81,20 @@ def make_boolean(call: Call) -> Any:
 
 @model("ri_float64")
 def make_float64(call: Call) -> Any:
-    path = _make_path(call.state, _read_name(call, 0))
-    return read_float_bits(call.run.solving.make_input(path, InputKind.FLOAT64, 64, True).term, 64)
+    return _make_float(call, InputKind.FLOAT64, 64)
 
 
 @model("ri_float32")
 def make_float32(call: Call) -> Any:
+    return _make_float(call, InputKind.FLOAT32, 32)
+
+
+def _make_float(call: Call, kind: InputKind, bits: int) -> Any:
     path = _make_path(call.state, _read_name(call, 0))
-    return read_float_bits(call.run.solving.make_input(path, InputKind.FLOAT32, 32, True).term, 32)
+    if path.endswith(".w") and path not in call.state.model:
+        # Of a quaternion: the example to begin with turns nothing, instead of being no rotation at all.
+        call.state.model[path] = pack_float(1.0, bits)
+    return read_float_bits(call.run.solving.make_input(path, kind, bits, True).term, bits)
 
 
 @model("ri_size")

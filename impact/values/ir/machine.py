@@ -11,6 +11,7 @@ from ..outcomes import CrashKind
 from .layout import IrType
 from .memory import AddressMap, MemoryObject
 from .module import Code, Pointer
+from .ranges import Ranges
 from .state import Frame, State
 
 
@@ -20,6 +21,7 @@ class Machine(Protocol):
     addresses: AddressMap
     made_globals: dict[int, tuple[str, MemoryObject]]
     type_numbers: dict[str, int]
+    ranges: Ranges
 
     def make_crash(self, kind: CrashKind, detail: str) -> Any: ...
 

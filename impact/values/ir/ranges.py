@@ -7,7 +7,7 @@ Those of integers are signed. Those of floats are exact at their ends: rounding 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 import z3
@@ -215,8 +215,11 @@ class Ranges:
                     found = _make_unsigned(spans[1], term.arg(1).size())
                 else:
                     found = Span(0, (1 << (bits - first.size())) - 1)
-        elif kind == z3.Z3_OP_EXTRACT and term.params()[1] == 0:
-            if everything.low <= spans[0].low and spans[0].high <= everything.high:
+        elif kind == z3.Z3_OP_EXTRACT:
+            first, last = term.params()
+            if spans[0].low >= 0 and spans[0].high < 1 << (first + 1):
+                found = Span(spans[0].low >> last, spans[0].high >> last)
+            elif last == 0 and everything.low <= spans[0].low and spans[0].high <= everything.high:
                 found = spans[0]
         elif kind == z3.Z3_OP_BAND:
             highs = [each.high for each in spans if each.low >= 0]
@@ -307,3 +310,55 @@ def _compare_floats(kind: int, left: FloatSpan, right: FloatSpan) -> bool | None
     if kind == z3.Z3_OP_FPA_LE:
         return False if left.low > right.high else True if left.high <= right.low and not may_fail else None
     return False if left.high < right.low or right.high < left.low else None
+
+
+def narrow_floats(conditions: Iterable[Any]) -> dict[str, FloatSpan]:
+    """Spans of inputs that some of the conditions compare with numbers."""
+    spans: dict[str, FloatSpan] = {}
+    pending = list(conditions)
+    while pending:
+        condition = pending.pop()
+        kind = condition.decl().kind()
+        if kind == z3.Z3_OP_AND:
+            pending.extend(condition.children())
+            continue
+        is_negated = kind == z3.Z3_OP_NOT
+        inner = condition.arg(0) if is_negated else condition
+        narrowed = _read_bound(inner, is_negated)
+        if narrowed is not None:
+            name, span = narrowed
+            before = spans.get(name, _ANY_FLOAT)
+            spans[name] = FloatSpan(
+                max(before.low, span.low), min(before.high, span.high), before.has_nan and span.has_nan
+            )
+    return spans
+
+
+def _read_bound(condition: Any, is_negated: bool) -> tuple[str, FloatSpan] | None:
+    """What a comparison of an input with a number says of it."""
+    kind = condition.decl().kind()
+    if kind not in _FLOAT_COMPARISONS:
+        return None
+    left, right = condition.arg(0), condition.arg(1)
+    is_below = kind in (z3.Z3_OP_FPA_LT, z3.Z3_OP_FPA_LE)
+    if z3.is_fp_value(left):
+        left, right, is_below = right, left, not is_below
+    name = _read_input(left)
+    if not name or not z3.is_fp_value(right):
+        return None
+    value = read_float_value(right)
+    if math.isnan(value):
+        return None
+    if kind == z3.Z3_OP_FPA_EQ:
+        return None if is_negated else (name, FloatSpan(value, value, False))
+    if is_below != is_negated:
+        return name, FloatSpan(-math.inf, value, is_negated)
+    return name, FloatSpan(value, math.inf, is_negated)
+
+
+def _read_input(term: Any) -> str:
+    """The input whose bits a float has; empty for another term."""
+    if term.decl().kind() != z3.Z3_OP_FPA_TO_FP or term.num_args() != 1:
+        return ""
+    bits = term.arg(0)
+    return bits.decl().name() if bits.decl().kind() == z3.Z3_OP_UNINTERPRETED else ""

@@ -38,6 +38,7 @@ from .module import (
     UNDEFINED,
     Argument,
     BasicBlock,
+    BytesConstant,
     Composite,
     Computed,
     Function,
@@ -45,7 +46,6 @@ from .module import (
     GlobalVariable,
     Instruction,
     ReadingError,
-    BytesConstant,
     Zeros,
 )
 

@@ -6,9 +6,7 @@ their neighbours, 0, 1, NaN) answers. A guess is checked by calculating the cond
 
 from __future__ import annotations
 
-import itertools
 import math
-import random
 import time
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
@@ -16,10 +14,14 @@ from typing import Any, NamedTuple
 import z3
 
 from ..outcomes import InputKind, SymbolicInput, UnknownFunction
+from .guessing import Guessing
+from .ranges import Ranges, narrow_floats
 from .terms import pack_float, read_float_value, reduce_term
 
-_FLOATS = (InputKind.FLOAT32, InputKind.FLOAT64)
-_USUAL = (0.0, 1.0, -1.0, 0.5, 2.0, math.nan, 100.0, math.inf, -math.inf, 1e10, -0.5)
+_EFFORT = 4_000_000
+"""What a question may cost; about a million a second."""
+_SLOW_EFFORT = 400_000
+"""The same where it calculates with floats: what is not solved soon is not solved at all."""
 _SLOW_OPERATIONS = frozenset(
     (
         z3.Z3_OP_FPA_ADD, z3.Z3_OP_FPA_SUB, z3.Z3_OP_FPA_MUL, z3.Z3_OP_FPA_DIV, z3.Z3_OP_FPA_SQRT, z3.Z3_OP_FPA_FMA,
@@ -34,14 +36,20 @@ class SolverTimeout(Exception):
 
 class Traits(NamedTuple):
     """What a term is made of. names: of variables; constants: floats in it; is_slow: whether it calculates with
-    floats."""
+    floats; has_products: whether it multiplies integers."""
 
     names: frozenset[str]
     constants: frozenset[float]
     is_slow: bool
+    has_products: bool
 
 
-_NOTHING = Traits(frozenset(), frozenset(), False)
+def is_certain(value: Any) -> bool:
+    """Whether a truth value is the number 1: a term that stays open is not."""
+    return isinstance(value, int) and value == 1
+
+
+_NOTHING = Traits(frozenset(), frozenset(), False, False)
 Model = Mapping[str, int]
 
 
@@ -57,9 +65,9 @@ class Solving:
         self.questions = 0
         self.undecided = 0
         self._traits: dict[int, tuple[z3.ExprRef, Traits]] = {}
-        self._answers: dict[frozenset[int], tuple[Model | None, Sequence[z3.BoolRef]]] = {}
+        self._answers: dict[frozenset[int], tuple[Model | SolverTimeout | None, Sequence[z3.BoolRef]]] = {}
         self._pairs: dict[tuple[str, int], tuple[z3.ExprRef, z3.ExprRef]] = {}
-        self._random = random.Random(1)
+        self.guessing = Guessing(self.inputs, self.derived, self.holds_settled)
 
     def make_input(self, path: str, kind: InputKind, bits: int, is_signed: bool = False, most: int = 0):
         """The variable of a path; made when it is asked for first."""
@@ -92,7 +100,7 @@ class Solving:
     def _derive_traits(self, term: z3.ExprRef, children: Sequence[z3.ExprRef]) -> Traits:
         if not children:
             if z3.is_fp_value(term):
-                return Traits(frozenset(), frozenset((read_float_value(term),)), False)
+                return Traits(frozenset(), frozenset((read_float_value(term),)), False, False)
             if z3.is_const(term) and term.decl().kind() == z3.Z3_OP_UNINTERPRETED:
                 name = term.decl().name()
                 names = {name}
@@ -100,7 +108,7 @@ class Solving:
                     for argument in self.derived[name].arguments:
                         if isinstance(argument, z3.ExprRef):
                             names |= self.find_traits(argument).names
-                return Traits(frozenset(names), frozenset(), False)
+                return Traits(frozenset(names), frozenset(), False, False)
             return _NOTHING
         parts = [self._traits[child.get_id()][1] for child in children]
         if len(parts) == 1:
@@ -109,7 +117,8 @@ class Solving:
             names = frozenset().union(*(part.names for part in parts))
             constants = frozenset().union(*(part.constants for part in parts))
         is_slow = any(part.is_slow for part in parts) or term.decl().kind() in _SLOW_OPERATIONS
-        return Traits(names, constants, is_slow)
+        has_products = any(part.has_products for part in parts) or term.decl().kind() == z3.Z3_OP_BMUL
+        return Traits(names, constants, is_slow, has_products)
 
     def select_related(self, conditions: Iterable[z3.BoolRef], names: Iterable[str]) -> list[z3.BoolRef]:
         """Those that speak of some variables, and of what these are tied to."""
@@ -156,106 +165,70 @@ class Solving:
                         model[name] = pack_float(math.nan, derived.bits)
 
     def holds(self, conditions: Iterable[z3.BoolRef], model: Model) -> bool:
-        return all(self.evaluate(each, model) == 1 for each in conditions)
+        return all(is_certain(self.evaluate(each, model)) for each in conditions)
 
     def find_model(self, conditions: Sequence[z3.BoolRef], model: Model) -> dict[str, int] | None:
         """Values of the variables of some conditions that fulfil them, or None where there are none.
 
-        model: a near miss, from which guesses begin. Raises SolverTimeout.
+        model: a near miss, from which guesses begin. The newest condition is the last. Raises SolverTimeout.
         """
         key = frozenset(each.get_id() for each in conditions)
-        if key in self._answers:
-            answer = self._answers[key][0]
-            return None if answer is None else dict(answer)
+        if key not in self._answers:
+            self._answers[key] = (self._find_answer(conditions, model), tuple(conditions))
+        answer = self._answers[key][0]
+        if isinstance(answer, SolverTimeout):
+            raise answer
+        return None if answer is None else dict(answer)
+
+    def _find_answer(self, conditions: Sequence[z3.BoolRef], model: Model) -> Model | SolverTimeout | None:
         traits = [self.find_traits(each) for each in conditions]
         names = frozenset().union(*(each.names for each in traits))
+        constants = frozenset().union(*(each.constants for each in traits))
         is_slow = any(each.is_slow for each in traits)
-        found: dict[str, int] | None = None
-        if is_slow or any(name in self.derived for name in names):
-            found = self.guess_model(conditions, traits, model, 60)
-        if found is None:
-            found = self._solve(conditions, traits, names, model)
-        self._answers[key] = (found, tuple(conditions))
-        return None if found is None else dict(found)
+        is_derived = any(name in self.derived for name in names)
+        if is_slow:
+            ranges = Ranges(self.inputs, narrow_floats(conditions))
+            if any(ranges.is_impossible(each) for each in conditions):
+                return None
+        if is_slow or is_derived:
+            found = self.guessing.guess_floats(conditions, names, constants, model, 60, self.deadline)
+            if found is None and is_slow:
+                found = self.guessing.search_line(conditions, names, constants, model, self.deadline)
+            if found is not None:
+                return found
+        has_products = any(each.has_products for each in traits)
+        if has_products:
+            found = self.guessing.guess_texts(conditions, names, model, self.deadline)
+            if found is not None:
+                return found
+        return self._solve(conditions, names, _SLOW_EFFORT if is_slow else _EFFORT)
 
     def _solve(
-        self, conditions: Sequence[z3.BoolRef], traits: Sequence[Traits], names: frozenset[str], model: Model
-    ) -> dict[str, int] | None:
+        self, conditions: Sequence[z3.BoolRef], names: frozenset[str], effort: int
+    ) -> Model | SolverTimeout | None:
         self.questions += 1
         solver = z3.Solver()
-        left = max(0.05, self.deadline - time.monotonic())
-        solver.set("timeout", int(min(2.0, left) * 1000))
+        # Effort is counted, not time: an answer does not hang on how busy the machine is.
+        solver.set("rlimit", effort)
+        solver.set("timeout", int(max(0.05, self.deadline - time.monotonic()) * 1000))
         solver.add(*conditions)
         answer = solver.check()
         if answer == z3.unsat:
             return None
-        if answer == z3.sat:
-            solved = solver.model()
-            found = {
-                name: solved.eval(self.inputs[name].term, True).as_long()  # pyright: ignore[reportAttributeAccessIssue]
-                for name in names
-            }
-            if any(name in self.derived for name in names):
-                settled = dict(found)
-                self.settle(settled, names)
-                if self.holds(conditions, settled):
-                    return settled
-            return found
-        found = self.guess_model(conditions, traits, model, 200)
-        if found is None:
+        if answer != z3.sat:
             self.undecided += 1
-            raise SolverTimeout
+            return SolverTimeout()
+        solved = solver.model()
+        found = {
+            name: solved.eval(self.inputs[name].term, True).as_long()  # pyright: ignore[reportAttributeAccessIssue]
+            for name in names
+        }
+        settled = dict(found)
+        if self.holds_settled(conditions, settled):
+            return settled
         return found
 
-    def guess_model(
-        self, conditions: Sequence[z3.BoolRef], traits: Sequence[Traits], model: Model, tries: int
-    ) -> dict[str, int] | None:
-        """Values for the floats among the variables, by trial; the others stay as in model."""
-        names = frozenset().union(*(each.names for each in traits))
-        floats = sorted(name for name in names if self.inputs[name].kind in _FLOATS and name not in self.derived)
-        if not floats:
-            return None
-        base = {name: model.get(name, 0) for name in names}
-        # What is hardest is asked first: the newest condition comes last in the list.
-        ordered = list(reversed(conditions))
-        constants = sorted(
-            {abs(value) for each in traits for value in each.constants if math.isfinite(value)},
-            key=lambda x: (x == 0, x),
-        )[:6]
-        for values in itertools.islice(self._list_guesses(floats, constants), tries):
-            trial = dict(base)
-            for name, value in values.items():
-                trial[name] = pack_float(value, self.inputs[name].bits)
-            self.settle(trial, names)
-            if self.holds(ordered, trial):
-                return trial
-            if time.monotonic() > self.deadline:
-                return None
-        return None
-
-    def _list_guesses(self, floats: Sequence[str], constants: Sequence[float]):
-        near = (
-            [
-                signed
-                for value in constants
-                for each in (value, math.nextafter(value, math.inf), value * 1.5, value * 0.5)
-                for signed in (each, -each)
-            ]
-            if hasattr(math, "nextafter")
-            else [s for v in constants for e in (v, v * 1.5, v * 0.5) for s in (e, -e)]
-        )
-        pool = [*_USUAL[:6], *near, *_USUAL[6:]]
-        yield {}
-        for value in (0.0, 1.0):
-            yield dict.fromkeys(floats, value)
-        if len(floats) > 1:
-            for name in floats[:8]:
-                yield {each: 1.0 if each == name else 0.0 for each in floats}
-        for value in pool[:16]:
-            for name in floats[:3]:
-                yield {name: value}
-        while True:
-            yield {
-                name: self._random.choice(pool) if self._random.random() < 0.7 else self._random.uniform(-10, 10)
-                for name in floats
-            }
+    def holds_settled(self, conditions: Iterable[z3.BoolRef], model: dict[str, int]) -> bool:
+        """Whether conditions hold, after variables that are derived from others are calculated, in place."""
+        self.settle(model, model.keys())
+        return self.holds(conditions, model)

@@ -77,8 +77,7 @@ class Member(NamedTuple):
 
 
 class State:
-    """One way through the program. model: values of the variables that lead here; None where the solver gave no
-    answer."""
+    """One way through the program. model: values of the variables that lead here."""
 
     def __init__(self):
         self.owner = object()
@@ -87,7 +86,7 @@ class State:
         self.objects: dict[int, MemoryObject] = {}
         self.conditions: list[z3.BoolRef] = []
         self.known: dict[int, bool] = {}
-        self.model: dict[str, int] | None = {}
+        self.model: dict[str, int] = {}
         self.effects: tuple[Observable, ...] = ()
         self.logs: tuple[str, ...] = ()
         self.sent: tuple[Sent, ...] = ()
@@ -121,7 +120,7 @@ class State:
         twin.objects = dict(self.objects)
         twin.conditions = list(self.conditions)
         twin.known = dict(self.known)
-        twin.model = None if self.model is None else dict(self.model)
+        twin.model = dict(self.model)
         twin.counts = dict(self.counts)
         twin.values = dict(self.values)
         return twin

@@ -67,7 +67,8 @@ void __throw_length_error(const char *) { klee_report_error(__FILE__, __LINE__, 
 void __throw_logic_error(const char *) { klee_report_error(__FILE__, __LINE__, "std::logic_error", "exception.err"); }
 void __throw_bad_alloc() { klee_report_error(__FILE__, __LINE__, "std::bad_alloc", "exception.err"); }
 void __throw_bad_function_call() { klee_report_error(__FILE__, __LINE__, "std::bad_function_call", "exception.err"); }
-void __glibcxx_assert_fail(const char *, int, const char *, const char *) { klee_report_error(__FILE__, __LINE__, "an assertion of libstdc++", "assert.err"); }
 }  // namespace std
+extern "C" void ri_assertion_failed(const char *, int, const char *, const char *) __asm__("_ZSt21__glibcxx_assert_failPKciS0_S0_");
+extern "C" void ri_assertion_failed(const char *, int, const char *, const char *) { klee_report_error(__FILE__, __LINE__, "an assertion of libstdc++", "assert.err"); }
 
 int main() { RI_KLEE_ENTRY(); return 0; }

@@ -76,19 +76,36 @@ template <class A, class B> void convert(const A &a, B &b) {
   else if constexpr (std::is_same<B, ri::geo::Pose>::value || std::is_same<B, ri::geo::Point>::value) toMsg(a, b);
   else b = toMsg(a);
 }
+// What any transform makes of a pose is any pose: an input, so that nobody has to solve for sines. It is finite where the
+// pose was.
+inline void ri_move(double &out, double in, const char *name) {
+  out = ri_float64(name);
+  ri_assume(std::isfinite(out) || !std::isfinite(in));
+}
+template <class P> void ri_move_vector(P &out, const P &in) {
+  P moved = in;
+  ri_move(moved.x, in.x, "x"); ri_move(moved.y, in.y, "y"); ri_move(moved.z, in.z, "z");
+  out = moved;
+}
+template <class Q> void ri_turn(Q &out, const Q &in) { ri_move_vector(out, in); ri_move(out.w, in.w, "w"); }
+template <class P> void ri_move_pose(P &out, const P &in) {
+  ri_enter("position"); ri_move_vector(out.position, in.position); ri_leave();
+  ri_enter("orientation"); ri_turn(out.orientation, in.orientation); ri_leave();
+}
+inline int ri_moved = 0;
 template <class M> void doTransform(const M &in, M &out, const ri::geo::TransformStamped &by) {
-  Transform t; fromMsg(by.transform, t);
-  out = in;
-  auto move_point = [&t](auto &p) { Vector3 v; fromMsg(p, v); v = t * v; p.x = v.x(); p.y = v.y(); p.z = v.z(); };
-  auto turn = [&t](auto &p) { Vector3 v; fromMsg(p, v); v = t.getBasis() * v; p.x = v.x(); p.y = v.y(); p.z = v.z(); };
-  auto move_pose = [&t](auto &p) { Transform own; fromMsg(p, own); toMsg(t * own, p); };
-  if constexpr (std::is_same<M, ri::geo::Point>::value) move_point(out);
-  else if constexpr (std::is_same<M, ri::geo::Vector3>::value) turn(out);
-  else if constexpr (std::is_same<M, ri::geo::Pose>::value) move_pose(out);
-  else if constexpr (std::is_same<M, ri::geo::PointStamped>::value) { move_point(out.point); out.header = by.header; }
-  else if constexpr (std::is_same<M, ri::geo::Vector3Stamped>::value) { turn(out.vector); out.header = by.header; }
-  else if constexpr (std::is_same<M, ri::geo::PoseStamped>::value) { move_pose(out.pose); out.header = by.header; }
+  M made = in;
+  ri_enter("~moved"); ri_enter_index(static_cast<uint64_t>(ri_moved++));
+  if constexpr (std::is_same<M, ri::geo::Point>::value || std::is_same<M, ri::geo::Vector3>::value) ri_move_vector(made, in);
+  else if constexpr (std::is_same<M, ri::geo::Pose>::value) ri_move_pose(made, in);
+  else if constexpr (std::is_same<M, ri::geo::Quaternion>::value) ri_turn(made, in);
+  else if constexpr (std::is_same<M, ri::geo::PointStamped>::value) { ri_move_vector(made.point, in.point); made.header = by.header; }
+  else if constexpr (std::is_same<M, ri::geo::Vector3Stamped>::value) { ri_move_vector(made.vector, in.vector); made.header = by.header; }
+  else if constexpr (std::is_same<M, ri::geo::QuaternionStamped>::value) { ri_turn(made.quaternion, in.quaternion); made.header = by.header; }
+  else if constexpr (std::is_same<M, ri::geo::PoseStamped>::value) { ri_move_pose(made.pose, in.pose); made.header = by.header; }
   else ri::unknown("tf2::doTransform");
+  ri_leave(); ri_leave();
+  out = made;
 }
 namespace impl {
 inline Quaternion toQuaternion(const Quaternion &q) { return q; }

@@ -8,6 +8,8 @@
 #include <functional>
 #include <future>
 #include <iostream>
+#include <memory_resource>
+#include <thread>
 #include <rosidl_runtime_cpp/ri_message.hpp>
 #include <builtin_interfaces/msg/duration.hpp>
 #include <builtin_interfaces/msg/time.hpp>
@@ -206,11 +208,13 @@ namespace callback_group { using rclcpp::CallbackGroupType; using rclcpp::Callba
 enum class IntraProcessSetting { Enable, Disable, NodeDefault };
 struct ContentFilterOptions { std::string filter_expression; std::vector<std::string> expression_parameters; };
 struct PublisherOptions {
+  std::shared_ptr<void> allocator;
   PublisherEventCallbacks event_callbacks; bool use_default_callbacks = true; CallbackGroup::SharedPtr callback_group;
   QosOverridingOptions qos_overriding_options; IntraProcessSetting use_intra_process_comm = IntraProcessSetting::NodeDefault;
 };
 struct TopicStatisticsOptions { int state = 0; std::chrono::milliseconds publish_period{1}; std::string publish_topic; };
 struct SubscriptionOptions {
+  std::shared_ptr<void> allocator;
   SubscriptionEventCallbacks event_callbacks; bool use_default_callbacks = true, ignore_local_publications = false;
   CallbackGroup::SharedPtr callback_group; QosOverridingOptions qos_overriding_options; ContentFilterOptions content_filter_options;
   IntraProcessSetting use_intra_process_comm = IntraProcessSetting::NodeDefault; TopicStatisticsOptions topic_stats_options;
@@ -524,9 +528,6 @@ class Node : public std::enable_shared_from_this<Node> {
     else ri::give_plain("subscriber", []() { ri_unknown("a subscription whose type is adapted"); }, file, line);
     auto made = std::make_shared<Subscription<M>>(); made->ri_topic = topic; return made;
   }
-  template <class S, class F, class... O> std::shared_ptr<Service<S>> create_service(const std::string &, F &&callback, O &&...) {
-    return ri_serve<S>(std::forward<F>(callback), "", 0);
-  }
   template <class S, class F> std::shared_ptr<Service<S>> create_service(const std::string &, F &&callback, RI_HERE) {
     return ri_serve<S>(std::forward<F>(callback), ri_file, ri_line);
   }
@@ -577,6 +578,7 @@ class Node : public std::enable_shared_from_this<Node> {
     const ParameterValue &kept = ri_keep(name, ri_find_value(name, ri_make_value(otherwise)));
     if constexpr (std::is_same<T, ParameterValue>::value) return kept;
     else if constexpr (std::is_same<T, ParameterType>::value || std::is_same<T, rcl_interfaces::msg::ParameterDescriptor>::value) return kept;
+    else if constexpr (std::is_pointer<std::decay_t<T>>::value) return kept.ri_string;
     else return static_cast<std::decay_t<T>>(ri_give<std::decay_t<T>>(kept));
   }
   template <class T> static T ri_give(const ParameterValue &value) {
