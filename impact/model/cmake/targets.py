@@ -313,7 +313,7 @@ def note_made(run: Interpreter, path: str, *, folder: bool = False) -> None:
     """Remembers a file, or a folder, that configuring or building writes into the tree or the build folder, in which
     catkin's devel space lies."""
     if path.startswith(_DEVEL):
-        path = f"{BINARY}/devel{path[len(_DEVEL):]}"
+        path = f"{BINARY}/devel{path[len(_DEVEL) :]}"
     place = run.make_relative(path) or (run.clean(path) if path.startswith(BINARY) else "")
     if place:
         run.made[f"{place}/" if folder else place] = None

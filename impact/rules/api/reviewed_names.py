@@ -39,8 +39,8 @@ class ReviewedNames:
         return any(self._view.machine.is_from_library("/".join(parts[at:])) for at in range(1, len(parts) - 2))
 
     def _is_main(self, path: str, library: str) -> bool:
-        """Whether a file is the main header of a library, or the source beside it, in a copy that the workspace carries:
-        they are called as the library is (`tinyxml2.h`), and so is a header that the platform's package has."""
+        """Whether a file is the main header of a library, or the source beside it, in a copy of the workspace: they are
+        called as the library is (`tinyxml2.h`), and so is a header that the platform's package has."""
         if path.rpartition("/")[2].rpartition(".")[0] != library:
             return False
         platform = self._view.target.platform
