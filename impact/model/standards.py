@@ -110,7 +110,8 @@ def find_failing_standard(
 
 
 # Macros that come with the build tools, and set no standard.
-_HARMLESS = ("catkin_", "ament_", "add_rostest", "add_ros", "generate_", "add_message", "add_service", "add_action",
+_HARMLESS = ("catkin_", "ament_", "add_rostest", "add_ros", "generate_messages",
+             "generate_dynamic_reconfigure", "generate_parameter_", "add_message", "add_service", "add_action",
              "ros", "rosidl_", "pkg_", "qt", "gtest_", "class_loader_", "pluginlib_", "rclcpp_components_",
              "protobuf_", "install_", "check_", "find_", "nodelet_", "orocos_", "configure_")  # fmt: skip
 

@@ -80,7 +80,8 @@ class UnknownContents:
     def is_likely(self, package: Package, wanted: str) -> bool:
         """Whether something wanted is most likely there, since something of unknown contents is called after it: made
         apart, or coming along as the release of a library that is built with plain CMake or Meson, or that a package of
-        ROS carries (`mrpt2`, `sdformat_vendor`), or one that no index has (`glog_catkin`)."""
+        ROS carries (`mrpt2`, `sdformat_vendor`), or one that no index has (`glog_catkin`), or a declared release whose
+        files are not stored."""
         return self.is_made_apart(package, wanted) or any(
             _may_be_called_after(name, wanted) for name in self._list_of_unknown_contents(package)
         )
@@ -100,9 +101,20 @@ class UnknownContents:
 
     @cache_method
     def _list_of_unknown_contents(self, package: Package) -> list[str]:
-        unknown = self._list_unknown_along(package)
+        unknown = {*self._list_unknown_along(package), *self.list_unstored(package)}
         names = self._view.build_environment(package)
         return [name for name in names if name in unknown or self.is_carried_library(name)]
+
+    @cache_method
+    def list_unstored(self, package: Package) -> tuple[str, ...]:
+        """Declared releases of the target whose files are not stored, so that they may install what they bundle, and
+        under names of their own. Packages that are called as those of interfaces are install no more than these."""
+        view = self._view
+        return tuple(
+            name for name in view.collect_declared(package)
+            if name not in view.workspace.packages and not INTERFACES.search(name)
+            and view.target.find_version(name) is not None and view.offers.find_package(name) is None
+        )  # fmt: skip
 
     def is_made_apart(self, package: Package, wanted: str) -> bool:
         """Whether something, or its folder, is called after what the build of a package downloads, or after a folder

@@ -305,11 +305,12 @@ def execute_process(run: Interpreter, call: CommandCall, args: list[Word]) -> No
     if call.name in ("try_compile", "try_run"):
         for name in args[:1]:
             run.set_unknown(name, call.at)
+    folder = next((str(name) for keyword, name in itertools.pairwise(args) if keyword == "WORKING_DIRECTORY"), "")
     for keyword, name in itertools.pairwise(args):
         if keyword in _ANSWERS:
             run.set_unknown(name, call.at)
         else:
-            note_written(run, name)
+            note_written(run, name, folder if folder.startswith("/") else "")
 
 
 _ANSWERS = make_name_set(

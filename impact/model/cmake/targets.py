@@ -131,21 +131,27 @@ _ENDINGS = (".c", ".C", ".c++", ".cc", ".cpp", ".cxx", ".cu", ".h", ".hh", ".hpp
 
 @handles("target_sources", least=1)
 def add_target_sources(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """add_target_sources(), FILE_SET forms included."""
+    """add_target_sources(), FILE_SET forms included: the base folders of a set of headers are searched."""
     draft = resolve_target(run, args[0])
     check_scope(run, draft, args)
     kept: list[Word] = []
-    section = ""
+    searched: list[Word] = []
+    section = scope = ""
     for item in args[1:]:
         if item in ("PUBLIC", "PRIVATE", "INTERFACE"):
-            section = ""
+            section, scope = "", item
         elif item in ("FILE_SET", "TYPE", "BASE_DIRS"):
             section = str(item)
         elif item == "FILES":
             section = ""
         elif not section:
             kept.append(item)
+        elif section == "BASE_DIRS":
+            searched.extend([scope, item] if scope else [item])
     add_sources(run, draft, kept)
+    if "FILE_SET" in args and "CXX_MODULES" not in args:
+        folder = wrap(run.scope["CMAKE_CURRENT_SOURCE_DIR"].text, args[0].at)
+        add_links(run, draft, searched if "BASE_DIRS" in args else [folder], "include")
 
 
 @handles("target_precompile_headers", least=2)
@@ -313,19 +319,25 @@ def note_made(run: Interpreter, path: str, *, folder: bool = False) -> None:
     """Remembers a file, or a folder, that configuring or building writes into the tree or the build folder, in which
     catkin's devel space lies."""
     if path.startswith(_DEVEL):
-        path = f"{BINARY}/devel{path[len(_DEVEL):]}"
+        path = f"{BINARY}/devel{path[len(_DEVEL) :]}"
     place = run.make_relative(path) or (run.clean(path) if path.startswith(BINARY) else "")
     if place:
         run.made[f"{place}/" if folder else place] = None
 
 
-def note_written(run: Interpreter, item: Word) -> None:
+def note_written(run: Interpreter, item: Word, folder: str = "") -> None:
     """Remembers an argument of a program, or a word of one for a shell, that names a path of the tree which does not
-    exist: the program makes it."""
+    exist: the program makes it. folder: where the program runs, as an absolute path; a relative name of a file is one
+    of it."""
     for word in [item, *(wrap(each, item.at) for each in item.split())] if " " in item else [item]:
+        if folder and _FILE.fullmatch(word):
+            word = wrap(posixpath.join(folder, word), item.at)
         path = run.make_relative(word) if word.startswith("/") else None
         if path and not run.has_path(word):
             run.made[path] = run.made[f"{path}/"] = None
+
+
+_FILE = re.compile(r"(?![-./])[\w./+-]+\.[A-Za-z]\w*")
 
 
 @handles("add_custom_command")

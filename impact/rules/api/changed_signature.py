@@ -29,12 +29,14 @@ Use instead
 
 Not reported
     Code that a version test excludes on the target; packages that do not depend on the library; what is passed in
-    variables whose type does not show in the file.
+    variables whose type does not show in the file; methods that come later, where another package that is declared
+    declares one of that name.
 """
 
 from collections.abc import Iterator
 
 from ....edges.console import format_count
+from ...model.package import NameUse
 from ...model.standards import find_failing_standard
 from ...targets.changes import find_function, find_standards, shows_no_type
 from ...targets.symbol import Availability
@@ -126,6 +128,8 @@ def _list_reviewed(view: TargetView, package: Package) -> Iterator[Diagnostic | 
             or (found.horizon is not None and not view.is_active_on(found.horizon, use.conditions))
         ):
             continue
+        if not found.earlier and not found.detail and _may_be_of_another(view, package, use, found.package):
+            continue
         standard = find_failing_standard(view, package, use, *find_standards(use.text))
         if standard is None:
             continue
@@ -141,3 +145,13 @@ def _list_reviewed(view: TargetView, package: Package) -> Iterator[Diagnostic | 
             found = found._replace(evidence=None)
         kind = "compiles" if found.detail else "reviewed" if found.earlier else "reviewed early"
         yield diagnose(found, use.at, shown, package.name, doubts, kind=kind, data=data)
+
+
+def _may_be_of_another(view: TargetView, package: Package, use: NameUse, owner: str) -> bool:
+    """Whether a C++ method may be that of a class of another declared package, whose stored versions declare one of its
+    name."""
+    function = find_function(use.text, use.language) if use.language == "cpp" else ""
+    if not function:
+        return False
+    offers = (view.offers.find_package(name) for name in view.collect_declared(package) if name != owner)
+    return any(offer.history.has_declared(function) for offer in offers if offer is not None)

@@ -28,14 +28,26 @@ class ReviewedNames:
         found = self.list_rows(kind, use.text, "removed", "changed")
         if not found and use.language == "cpp" and use.text.count("::") == 1 and use.text.startswith(_ROOTS):
             found = self.list_rows(kind, use.text.rsplit("::", 1)[-1], "removed", "changed")
-        if any(row.library for row in found) and self._is_copy(use.at.path):
-            return [row for row in found if not row.library]  # its own version has the names that it uses
+        if any(row.library for row in found):  # a copy has the names that it uses
+            copied = self._is_copy(use.at.path)
+            found = [row for row in found if not row.library or not (copied or self._is_main(use.at.path, row.package))]
         return found
 
     def _is_copy(self, path: str) -> bool:
         """Whether a file is a library's own header, in a copy that the workspace carries."""
         parts = path.split("/")
         return any(self._view.machine.is_from_library("/".join(parts[at:])) for at in range(1, len(parts) - 2))
+
+    def _is_main(self, path: str, library: str) -> bool:
+        """Whether a file is the main header of a library, or the source beside it, in a copy of the workspace: they are
+        called as the library is (`tinyxml2.h`), and so is a header that the platform's package has."""
+        if path.rpartition("/")[2].rpartition(".")[0] != library:
+            return False
+        platform = self._view.target.platform
+        names = (f"{library}.h", f"{library}.hpp")
+        names = tuple(name for name in names if self._view.providers.has_system_header(name, platform))
+        headers = (header for package in self._view.workspace for header in package.linked.headers)
+        return any(header.rpartition("/")[2] in names for header in headers)
 
     def list_rows(self, kind: str, name: str, *states: str) -> list[Availability]:
         """The rows on a name that say that it is in one of these states."""

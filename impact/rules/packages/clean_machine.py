@@ -136,7 +136,9 @@ def _collect_unknown_doubts(view: TargetView, package: Package, need: Need, name
     # A key that installs no library itself is there for what it brings along.
     if any(debian and not any(map(_LIBRARY.search, debian)) for debian in map(view.list_debs, opaque)):
         return (Doubt.DISPENSABLE,)
-    if opaque or view.unknown_contents.may_come_along(package, name, need.providers):
+    include = need.how == "include" and need.providers[0].kind == "system"
+    bundling = view.unknown_contents.list_unstored(package) if include else ()
+    if opaque or bundling or view.unknown_contents.may_come_along(package, name, need.providers):
         return (Doubt.INCOMPLETE,)
     together = need.role == "test" and not view.roles.farm_makes_tests
     return (Doubt.LUCKY,) if together and view.is_met(need.providers, view.brought_to_workspace) else ()

@@ -11,7 +11,8 @@ Why it breaks
 
 Severity
     error; warning for a name `x` or `x2` if exactly one package or key such as `x_vendor` or `libx-dev` exists, for one
-    that differs from a package of the workspace in the ending of a word, and for a target of the package.
+    that differs from a package of the workspace in the ending of a word, for a target of the package, and for what only
+    the documentation is made with (`doc_depend`), which `rosdep install` leaves out.
 
 Example
     <depend>Eigen3</depend>
@@ -29,7 +30,7 @@ import re
 from ...model.misspelling import is_slip
 from ...model.package import BUILD_TOOLS
 from ..vocabulary import Diagnostic, Doubt, Package, Remove, TargetView, Text, rule
-from .unresolved_names import find_intended, find_packaged, list_unknown, replace_name
+from .unresolved_names import find_intended, find_packaged, list_name_doubts, list_unknown, replace_name
 
 _NEEDLESS = ("standard library", "target")
 """What a name stands for that is not to be declared."""
@@ -61,7 +62,7 @@ def misspelt_dependency(view: TargetView, package: Package):
         kind, names = intended
         replacement = names[0]
         data = {"replacement": replacement, "packages": names[:2]}
-        doubts = (Doubt.AMBIGUOUS,) if kind in ("target", "related") else ()
+        doubts = (Doubt.AMBIGUOUS,) if kind in ("target", "related") else list_name_doubts(view, package, name)
         fix = ()
         if kind in _NEEDLESS:
             fix = (Remove(at.path, name),)

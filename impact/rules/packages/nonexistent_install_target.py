@@ -15,11 +15,13 @@ Use instead
     install(TARGETS crane_node DESTINATION lib/${PROJECT_NAME})
 
 Not reported
-    Packages whose CMake code cannot be read in full, or that call the build of something else.
+    Packages whose CMake code cannot be read in full, or that call the build of something else; names that are given to
+    a function of another package of which it is not known what it does.
 """
 
 import re
 
+from ...model.cmake.interpreter import is_modelled
 from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 from .install_rules import read_installs
 
@@ -32,6 +34,9 @@ def nonexistent_install_target(view: TargetView, package: Package):
     if package.build.may_add_targets:
         return
     added = {t.name for t in package.build.targets if t.kind != "unknown"}
+    for use in package.build.uses:
+        if use.kind == "command" and not is_modelled(use.name, use.conditions):
+            added.update(use.makes)
     for install in read_installs(view, package) or ():
         if install.kind == "targets" and view.is_sure(install.conditions):
             for item in install.items:

@@ -72,7 +72,8 @@ def find_undeclared(view: TargetView, package: Package) -> Undeclared:
         carried = system and need.how != "import"
         if carried and need.how == "include" and _may_lie_on_machine(package, need):
             continue
-        if not (carried and view.unknown_contents.is_likely(package, need.subject)):
+        guessed = carried or not need.providers[0].sure
+        if not (guessed and view.unknown_contents.is_likely(package, need.subject)):
             kind = found.borrowed if view.is_met(need.providers, closure) else found.missing
             kind.setdefault(name, []).append(need)
     return found

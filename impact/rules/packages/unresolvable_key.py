@@ -7,6 +7,9 @@ What it does
 Why it breaks
     `rosdep install` stops with "No definition of [x] for OS version", and bloom refuses to release the package.
 
+Severity
+    error; warning for what only the documentation is made with (`doc_depend`), which `rosdep install` leaves out.
+
 Example
     <depend>eigen3</depend>                     <!-- which is a key of other platforms -->
 
@@ -19,7 +22,7 @@ Not reported
 """
 
 from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
-from .unresolved_names import find_installing, list_unresolved, replace_name
+from .unresolved_names import find_installing, list_name_doubts, list_unresolved, replace_name
 
 _MESSAGE = "rosdep has no rule for `{subject}` on {platform}"
 
@@ -41,4 +44,5 @@ def unresolvable_key(view: TargetView, package: Package):
             fix = replace_name(view, package, name, installing) if installing else ()
             data = {"platform": target.platform, "replacement": similar or installing}
             kind = "no rule, similar" if similar or installing else "no rule"
-            yield Diagnostic(at, name, package.name, data, kind=kind, fix=fix)
+            doubts = list_name_doubts(view, package, name)
+            yield Diagnostic(at, name, package.name, data, kind, doubts, fix)

@@ -10,7 +10,7 @@ from ...facts.python.uses import KINDS
 from ...targets.changes import DISTROS
 from ...targets.providers.stdlib import was_ever_in_stdlib
 from ...targets.target import Resolution
-from ..vocabulary import At, Package, Remove, Replace, TargetView
+from ..vocabulary import At, Doubt, Package, Remove, Replace, TargetView
 
 
 class UnresolvedName(NamedTuple):
@@ -52,6 +52,13 @@ def list_unknown(view: TargetView, package: Package) -> Iterator[UnresolvedName]
     for one in list_unresolved(view, package):
         if one.resolution is None and not target.was_ever_released(one.name) and not target.knows_key(one.name):
             yield one
+
+
+def list_name_doubts(view: TargetView, package: Package, name: str) -> tuple[Doubt, ...]:
+    """What speaks against an error where a declared name is not known: of what only the documentation is made with,
+    `rosdep install` asks nothing unless it is told to."""
+    kinds = {dependency.kind for dependency in view.list_dependencies(package) if dependency.name == name}
+    return (Doubt.DISTURBS,) if kinds == {"doc"} else ()
 
 
 _MADE = frozenset(("executable", "library", "interface", "module"))
