@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterable
+import re
+from collections.abc import Callable, Collection, Iterable
 
 from ...facts.extract import ExtractedFacts
 from ...facts.kinds import FLOW, find_kind
@@ -13,6 +14,7 @@ from ..package import find_folder_role
 from ..workspace import Workspace
 
 _READ = frozenset(("cpp", "python", "script", "launch_xml", "launch_yaml", "params", "xml", "manifest", "cmake"))
+_NAME = re.compile(rb"<name>([^<>]{1,200})</name>")
 _MANIFESTS = ("manifest", "manifest_variant")
 BUILD = frozenset(
     (*_MANIFESTS, "cmake", "setup_py", "setup_cfg", "plugin_xml", "xml", "msg", "srv", "action")
@@ -26,7 +28,9 @@ def make_code_selector(tree: Tree) -> Callable[[str], str | None]:
     Which folders are packages is not known before files are read: a file is left out when it would be a test of
     whatever manifest lies above it.
     """
-    roots = {entry.path.rpartition("/")[0] for entry in tree.list_entries() if find_kind(entry.path) in _MANIFESTS}
+    paths = [entry.path for entry in tree.list_entries()]
+    roots = {path.rpartition("/")[0] for path in paths if find_kind(path) in _MANIFESTS}
+    names = {root: _read_name(tree, root) for root in _list_doubtful(paths, roots)}
     above: dict[str, tuple[int, ...]] = {}
 
     def list_starts(folder: str) -> tuple[int, ...]:
@@ -47,16 +51,34 @@ def make_code_selector(tree: Tree) -> Callable[[str], str | None]:
         if kind is None:
             return None
         inside = list_starts(path.rpartition("/")[0])
-        return kind if any(is_code(path, start) for start in inside) else None
+        own = ((start, names.get(path[: max(0, start - 1)], "")) for start in inside)
+        return kind if any(is_code(path, start, name) for start, name in own) else None
 
     return select_kind
 
 
-def is_code(path: str, start: int) -> bool:
+def _list_doubtful(paths: Iterable[str], roots: Collection[str]) -> set[str]:
+    """The packages that have a folder of Python which is called like one of tests, and may be their module."""
+    inner = (path.removesuffix("/__init__.py") for path in paths if path.endswith("/__init__.py"))
+    rows = (folder.rpartition("/") for folder in inner)
+    return {root for root, _, name in rows if root in roots and find_folder_role(f"{name}/_.py") == "test"}
+
+
+def _read_name(tree: Tree, root: str) -> str:
+    """What the manifest of a package calls it; empty where it has none such."""
+    try:
+        found = _NAME.search(tree.read(f"{root}/package.xml".lstrip("/")))
+    except (OSError, KeyError):
+        return ""
+    return found[1].decode("utf-8", "replace").strip() if found is not None else ""
+
+
+def is_code(path: str, start: int, name: str = "") -> bool:
     """Whether a file is part of what a package runs: neither a test nor in a hidden folder. start: where its path
-    within the package begins."""
-    module = path[: max(0, start - 1)].rpartition("/")[2]
-    return "/." not in f"/{path[start:]}" and find_folder_role(path[start:], module) != "test"
+    within the package begins; name: the package's, where it is known."""
+    modules = {path[: max(0, start - 1)].rpartition("/")[2], name}
+    inner = path[start:]
+    return "/." not in f"/{inner}" and any(find_folder_role(inner, module) != "test" for module in modules)
 
 
 def compute_stamp(workspace: Workspace) -> bytes:

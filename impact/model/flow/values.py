@@ -527,6 +527,9 @@ class FlowValues:
         written = self.code.list_writes(variable)
         if origins is not None:
             written = [(w, each) for w, each in written if self.origins.may_be_of(each.target, w, origins)]
+        if self.within is not None and variable.kind == "member":
+            # What another program writes into its own object, unless nothing that runs writes it.
+            written = [(w, each) for w, each in written if self._runs(w)] or written
         rows, given = self._select_given(written)
         own = [each for writer, each in rows if writer is fn and line]
         around = fn.list_guards_around(self._find_guard_of(fn, line, seen)) if line else ()

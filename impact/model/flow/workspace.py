@@ -125,7 +125,7 @@ def list_code(workspace: Workspace) -> dict[str, str]:
     for package in workspace:
         start = len(package.path) + 1 if package.path else 0
         for path in package.linked.files:
-            if path in extraction.kinds and is_code(path, start):
+            if path in extraction.kinds and is_code(path, start, package.name):
                 found[path] = package.name
     return found
 

@@ -53,6 +53,21 @@ def test_no_code_of_a_package_is_left_out(tree, tmp_path):
         assert workspace.extraction.second.kinds.keys() >= list_code(workspace).keys()
 
 
+def test_the_module_of_a_package_may_be_called_like_tests(tmp_path):
+    files = {
+        "package.xml": MANIFEST.format("test_rig"), "test_rig/__init__.py": "", "test_rig/drive.py": "",
+        "test/__init__.py": "", "test/test_drive.py": "", "test_other/__init__.py": "", "test_other/drive.py": "",
+    }  # fmt: skip
+    for path, text in files.items():
+        (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / path).write_text(text)
+    tree = WorkingTree(tmp_path)
+    wanted = make_code_selector(tree)
+    assert {path for path in files if wanted(path)} == {"test_rig/__init__.py", "test_rig/drive.py"}
+    with Store(tmp_path / ".cache") as store:
+        assert set(list_code(link_for_flow(tree, store))) == {"test_rig/__init__.py", "test_rig/drive.py"}
+
+
 def test_a_path_of_any_depth(tmp_path):
     (tmp_path / "package.xml").write_text(MANIFEST.format("deep"))
     wanted = make_code_selector(WorkingTree(tmp_path))
