@@ -118,7 +118,7 @@ def _list_few(collected: _Collected, solving: Solving) -> set[int] | None:
             if not isinstance(value, int) or len(found) >= _FEW:
                 return None
             found.add(value)
-            own.append(term != z3.BitVecVal(value, collected.bits))
+            own.append(term != z3.BitVecVal(value, collected.bits))  # pyright: ignore[reportArgumentType]
     return found
 
 
