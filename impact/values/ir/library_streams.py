@@ -26,6 +26,7 @@ from .terms import add_offsets, reduce_term
 _CONSOLES = ("_ZSt4cout", "_ZSt4cerr", "_ZSt4clog")
 _WHAT = "the text of a stream"
 _MOST = 8
+_FILES = ("stdin", "stdout", "stderr")
 # Where the buffer and the ios part of each class begin, and the size of it all.
 _LAYOUTS = {
     "18basic_stringstream": (24, 128, 392),
@@ -96,6 +97,8 @@ def fill_outside_stream(run: Executor, key: str, memory_object: MemoryObject):
     if key in _CONSOLES:
         memory_object.is_zeroed = True
         _fill_ios(run, state, memory_object, 0, 8)
+    elif key in _FILES:
+        memory_object.cells[0] = (8, run.find_variable(state, "a file of the console", 216))
     elif key.startswith("_ZTTNSt7__cxx11"):
         for name, (_, ios, _) in _LAYOUTS.items():
             if name in key:

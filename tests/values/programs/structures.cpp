@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdio>
 #include <deque>
 #include <functional>
 #include <iomanip>
@@ -173,6 +174,13 @@ void run_streamed(Publisher &pub, const Numbers &msg) {
   if (stream.str() == "value 12") pub.publish(12);
 }
 EXPLORE(streamed, Numbers, FIELD(a); FIELD(x))  // also: handled, log-only, ignored
+
+void run_printed(Publisher &pub, const Numbers &msg) {
+  std::fprintf(stderr, "%d\n", msg.a);
+  if (msg.a == 3) std::fflush(stdout);
+  else pub.publish(msg.a);
+}
+EXPLORE(printed, Numbers, FIELD(a))  // also: handled, log-only
 
 void run_extracted(Publisher &pub, const Text &msg) {
   std::istringstream stream(msg.data);
