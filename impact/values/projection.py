@@ -70,10 +70,10 @@ class _Group(NamedTuple):
     is_own: bool
 
 
-def project_fields(exploration: Exploration, seconds: float = 10.0) -> list[FieldProjection]:
+def project_fields(exploration: Exploration, seconds: float = 10.0, only: str = "") -> list[FieldProjection]:
     """Value sets of all fields that a condition speaks of, in the order of their inputs. seconds: for all of them;
-    what is not answered by then is not complete."""
-    return _Projector(exploration, seconds).project()
+    what is not answered by then is not complete. only: one field, by its path."""
+    return _Projector(exploration, seconds).project(only)
 
 
 class _Projector:
@@ -87,9 +87,11 @@ class _Projector:
         )
         self._related: dict[tuple[int, str], tuple[tuple[z3.BoolRef, ...], frozenset[str]]] = {}
 
-    def project(self) -> list[FieldProjection]:
+    def project(self, only: str) -> list[FieldProjection]:
         found = []
         for path, members in self._group_fields().items():
+            if only and path != only:
+                continue
             first = self.inputs[members[0]]
             if _is_text(self.inputs, members[0]):
                 found.append(self._project_text(path, members))

@@ -25,7 +25,7 @@ _FEW = 8
 _STEPS = 12
 
 
-class SentField(NamedTuple):
+class SentValues(NamedTuple):
     """A field that is sent. publisher: its name; path: of the field; places: where it is published."""
 
     publisher: str
@@ -49,7 +49,7 @@ class _Collected:
     places: dict[CodeLine, None] = field(default_factory=dict)
 
 
-def list_sent_fields(exploration: Exploration, seconds: float = 10.0) -> list[SentField]:
+def list_sent_fields(exploration: Exploration, seconds: float = 10.0) -> list[SentValues]:
     """Fields that are published on some path, with the values that they can have. A path that is unknown counts as far
     as it went; bytes of texts are left out."""
     collected: dict[tuple[str, str], _Collected] = {}
@@ -67,7 +67,7 @@ def list_sent_fields(exploration: Exploration, seconds: float = 10.0) -> list[Se
                     each.terms.append((path, value))
     solving = make_solving(exploration, time.monotonic() + seconds)
     return [
-        SentField(
+        SentValues(
             publisher, name, each.kind, each.bits, each.is_signed, _find_values(each, solving), tuple(each.places)
         )
         for (publisher, name), each in collected.items()
@@ -195,7 +195,7 @@ class _Hull:
         """The farthest value in one direction: what is farther is asked for until there is nothing."""
         limit = self._get_limit(predicate)
         for step in range(_STEPS):
-            if step == 1 and self._ask(self._compare(predicate, _halve(limit, self.is_float))) is not None:
+            if step == 1 and self._ask(self._compare(predicate, _divide_limit(limit, self.is_float))) is not None:
                 return limit
             found = self._ask(self._compare(predicate, value))
             if found is None:
@@ -207,7 +207,7 @@ class _Hull:
             if not math.isfinite(following) or following == value:
                 break
             value = following
-        return self._bisect(value, limit, predicate)
+        return self._search_end(value, limit, predicate)
 
     def _get_limit(self, predicate: str) -> Number:
         bits = self.collected.bits
@@ -218,7 +218,7 @@ class _Hull:
             return -(1 << (bits - 1)) if predicate == "lt" else (1 << (bits - 1)) - 1
         return 0 if predicate == "lt" else (1 << bits) - 1
 
-    def _bisect(self, value: Number, limit: Number, predicate: str) -> Number:
+    def _search_end(self, value: Number, limit: Number, predicate: str) -> Number:
         """Between a value that is there and one that need not be: what bounds do not exclude is kept."""
         inside, outside = self._make_key(value), self._make_key(limit)
         while abs(outside - inside) > 1:
@@ -249,5 +249,5 @@ class _Hull:
         return z3.is_false(condition) or ranges.is_impossible(condition)  # pyright: ignore[reportArgumentType]
 
 
-def _halve(limit: Number, is_float: bool) -> Number:
+def _divide_limit(limit: Number, is_float: bool) -> Number:
     return limit / 2 if is_float else int(limit) // 2

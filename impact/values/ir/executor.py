@@ -123,6 +123,9 @@ class Call(NamedTuple):
 
 CallModel = Callable[[Call], Any]
 
+# Variables of the C library that change how something is done, and not what.
+_SETTINGS = frozenset(("__libc_single_threaded",))
+
 
 class Executor:
     """One exploration of one function. find_call_model: what is called instead of a function of some name.
@@ -241,6 +244,8 @@ class Executor:
         return state.values[key]
 
     def make_outside(self, state: State, memory_object: MemoryObject, type_: IrType) -> Any:
+        if memory_object.name.lstrip("@") in _SETTINGS:
+            return 1
         return self.make_any_scalar(state, f"variable {memory_object.name}", type_)
 
     def add_object(self, state: State, size: int, kind: str, name: str, is_zeroed: bool = False) -> Pointer:

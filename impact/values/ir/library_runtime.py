@@ -461,8 +461,8 @@ def release_guard(call: Call) -> Any:
 
 _SKIPPED = (
     "__cxa_guard_abort", "_ZNSt8ios_base4InitC1Ev", "_ZNSt8ios_base4InitD1Ev", "llvm.stackrestore*",
-    "llvm.prefetch*", "llvm.invariant.end*", "llvm.va_end*", "__ubsan_on_report", "llvm.donothing",
-    "llvm.var.annotation*",
+    "llvm.prefetch*", "llvm.invariant.start*", "llvm.invariant.end*", "llvm.va_end*", "__ubsan_on_report",
+    "llvm.donothing", "llvm.var.annotation*",
 )  # fmt: skip
 
 

@@ -103,7 +103,7 @@ class Ranges:
             if each.get_id() not in self._float_spans:
                 span = self._derive_float(each)
                 if each.get_id() in self._known:
-                    span = _intersect(span, self._known[each.get_id()])
+                    span = _narrow_span(span, self._known[each.get_id()])
                 self._float_spans[each.get_id()] = (each, span)
         return self._float_spans[term.get_id()][1]
 
@@ -142,7 +142,7 @@ class Ranges:
         spans of terms, by their numbers."""
         if term.decl().kind() != z3.Z3_OP_ITE or depth == 0:
             span = self.find_float_span(term) if depth < 4 else _ANY_FLOAT
-            return _intersect(span, known[term.get_id()]) if term.get_id() in known else span
+            return _narrow_span(span, known[term.get_id()]) if term.get_id() in known else span
         sides = []
         for side, is_negated in ((term.arg(1), False), (term.arg(2), True)):
             condition, negated = term.arg(0), is_negated
@@ -152,7 +152,7 @@ class Ranges:
             own = known
             if compared is not None:
                 number = compared[0].get_id()
-                own = {**known, number: _intersect(known.get(number, _ANY_FLOAT), compared[1])}
+                own = {**known, number: _narrow_span(known.get(number, _ANY_FLOAT), compared[1])}
             sides.append(self._derive_choice(side, own, depth - 1))
         return _join_floats(sides)
 
@@ -350,11 +350,11 @@ def narrow_floats(conditions: Iterable[Any]) -> dict[str | int, FloatSpan]:
         compared = _read_comparison(inner, is_negated)
         if compared is not None:
             key = _read_input(compared[0]) or compared[0].get_id()
-            spans[key] = _intersect(spans.get(key, _ANY_FLOAT), compared[1])
+            spans[key] = _narrow_span(spans.get(key, _ANY_FLOAT), compared[1])
     return spans
 
 
-def _intersect(first: FloatSpan, second: FloatSpan) -> FloatSpan:
+def _narrow_span(first: FloatSpan, second: FloatSpan) -> FloatSpan:
     return FloatSpan(max(first.low, second.low), min(first.high, second.high), first.has_nan and second.has_nan)
 
 

@@ -78,7 +78,7 @@ _SKIPPED = frozenset(
 )  # fmt: skip
 _SKIPPED_WITH_VALUE = frozenset(
     (
-        "align", "dereferenceable", "dereferenceable_or_null", "sret", "captures", "initializes", "range",
+        "comdat", "align", "dereferenceable", "dereferenceable_or_null", "sret", "captures", "initializes", "range",
         "memory", "inrange", "elementtype", "preallocated", "inalloca", "nofpclass", "addrspace",
         "thread_local", "vscale_range", "alignstack",
     )

@@ -1,0 +1,265 @@
+"""The callbacks of a workspace's C++ code, and what their harnesses need to know of the classes around them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from ....edges.groups import group_pairs
+from ...facts.flow import DataMember, FlowExpr
+from ...model.fields.topics import extract_uses
+from ...model.flow.code import SOURCES, FlowCode, Fn, get_tail
+from ...model.flow.graph import Endpoint, Graph
+from ...model.flow.join import Join
+from ...model.flow.types import Cls, split_name
+from ...model.flow.workspace import get_flow
+from ...model.workspace import Package, Workspace
+
+_KINDS = {"subscriber": "subscriber", "server": "service", "action server": "action"}
+_DEEPEST = 4
+
+
+class ObservedMember(NamedTuple):
+    """A member of a class or a variable outside of one. type: as written. value: its initialiser where that is a
+    literal. is_state: a function other than a constructor writes it. is_read: something besides the callback names
+    it."""
+
+    name: str
+    type: str
+    value: str
+    is_state: bool
+    is_read: bool
+
+
+class CppCallback(NamedTuple):
+    """A callback with where it is given to the framework. kind: `subscriber`, `service`, `timer` or `action`. path,
+    line: of the call that subscribes. site: the function that it stands in. function: the callback's own, None where
+    it is not known. message_type: `package/Name`, empty for a timer."""
+
+    kind: str
+    path: str
+    line: int
+    site: Fn
+    function: Fn | None
+    message_type: str
+    topics: tuple[str, ...]
+    nodes: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """The callback's name."""
+        return self.function.name if self.function is not None else f"{self.site.name}:{self.line}"
+
+
+def list_cpp_callbacks(workspace: Workspace, graph: Graph) -> list[CppCallback]:
+    """All callbacks of the workspace's C++ code, in the order of their places."""
+    return list_callbacks(workspace, graph, "cpp")
+
+
+def list_callbacks(workspace: Workspace, graph: Graph, language: str) -> list[CppCallback]:
+    """All callbacks of the workspace's code in a language (`cpp`, `python`), in the order of their places."""
+    join = get_flow(workspace).code
+    ends = group_pairs(((one.role, one.path, one.line), one) for one in graph.endpoints)
+    found: dict[tuple[str, str, int, str], CppCallback] = {}
+    for each in (*_list_endpoints(join, ends, language), *_list_timers(join, graph, language)):
+        found.setdefault((each.kind, each.path, each.line, each.name), each)
+    return sorted(found.values(), key=lambda each: (each.path, each.line, each.kind, each.name))
+
+
+def _list_endpoints(
+    join: Join, ends: dict[tuple[str, str, int], list[Endpoint]], language: str
+) -> Iterator[CppCallback]:
+    for site in join.sites.endpoints:
+        fn = site.use.fn
+        if site.role not in _KINDS or site.implied or fn.source.facts.language != language:
+            continue
+        path, line = fn.source.path, site.use.call.line
+        rows = ends.get((site.role, path, line), [])
+        types = [site.type] if site.type else [each.type for each in site.types]
+        for callback in site.callbacks or (None,):
+            of = [one for one in rows if callback is None or one.callback is None or one.callback.name == callback.name]
+            known = [one.type for one in of if "/" in one.type] or [each for each in types if "/" in each]
+            yield CppCallback(
+                _KINDS[site.role], path, line, fn, callback, known[0] if known else "",
+                tuple(dict.fromkeys(one.topic for one in of if one.topic)),
+                tuple(dict.fromkeys(one.node for one in of if one.node)),
+            )  # fmt: skip
+
+
+def _list_timers(join: Join, graph: Graph, language: str) -> Iterator[CppCallback]:
+    nodes = group_pairs(((one.path, one.line), one.node) for one in graph.timers)
+    for site in join.sites.timers:
+        fn = site.use.fn
+        if fn.source.facts.language != language:
+            continue
+        path, line = fn.source.path, site.use.call.line
+        for callback in site.callbacks:
+            names = tuple(dict.fromkeys(each for each in nodes.get((path, line), []) if each))
+            yield CppCallback("timer", path, line, fn, callback, "", (), names)
+
+
+class ClassReader:
+    """What harnesses ask of the classes and variables of a workspace's C++ code."""
+
+    def __init__(self, workspace: Workspace):
+        self.workspace = workspace
+        self.code: FlowCode = get_flow(workspace).code.code
+        self._uses = extract_uses(workspace)
+        self._named: dict[str, set[tuple[str, int]]] = {}
+        for path, file in self._uses.items():
+            for function in file.functions:
+                for use in function.uses:
+                    for part in use.path.split("."):
+                        self._named.setdefault(part, set()).add((path, function.line))
+
+    def find_class(self, fn: Fn | None) -> Cls | None:
+        """The class whose method a function is, or stands in."""
+        return self.code.find_owner(fn) if fn is not None else None
+
+    def list_bases(self, cls: Cls) -> list[str]:
+        """The names of all bases of a class, those of other packages included."""
+        return list(self.code.list_base_names(cls))
+
+    def list_constructors(self, cls: Cls) -> list[list[str]]:
+        """The types of the parameters of each constructor that has a body, as written; those with a default left
+        out."""
+        found = []
+        for fn in self.code.find_method(cls, cls.parts[-1]):
+            types = [each.type for each in fn.facts.parameters if each.default is None]
+            defaults = self._count_defaults(fn)
+            found.append(types[: len(types) - defaults] if defaults else types)
+        return sorted(found, key=len)
+
+    def _count_defaults(self, fn: Fn) -> int:
+        total = len(fn.facts.parameters)
+        count = 0
+        for place in range(total - 1, -1, -1):
+            parameter = fn.facts.parameters[place]
+            if parameter.default is None and self.code.find_default(fn, place, parameter) is None:
+                break
+            count += 1
+        return count if all(each.default is None for each in fn.facts.parameters) else 0
+
+    def has_method(self, cls: Cls, name: str) -> bool:
+        return bool(self.code.find_method(cls, name))
+
+    def list_members(self, cls: Cls, callback: Fn | None) -> list[ObservedMember]:
+        """The data members of a class and of its bases in the workspace."""
+        found: dict[str, ObservedMember] = {}
+        for one in self.code.list_bases(cls):
+            for member in one.facts.members:
+                if "static" in member.type.split() or "constexpr" in member.type or not member.name.isidentifier():
+                    continue
+                if member.name not in found:
+                    written = self._is_written_by_others(member.name, one)
+                    read = self._is_named_by_others(member.name, callback)
+                    found[member.name] = _make_member(member, written, read)
+        return list(found.values())
+
+    def _is_written_by_others(self, name: str, cls: Cls) -> bool:
+        """Whether a function of a class that is no constructor writes a member."""
+        for fn in self.code.list_functions(cls):
+            if self.code.is_constructor(fn):
+                continue
+            targets = (each.target for each in fn.facts.assignments)
+            if any(name in _split_target(target) for target in targets):
+                return True
+            if any(name in _split_target(each.path) and each.kind == "write" for each in fn.facts.accesses):
+                return True
+        return self._changes(name, cls)
+
+    def _changes(self, name: str, cls: Cls) -> bool:
+        """Whether the field facts have it that something is put into a member."""
+        paths = {fn.source.path for fn in self.code.list_functions(cls)}
+        makers = {
+            (fn.source.path, fn.facts.line) for fn in self.code.list_functions(cls) if self.code.is_constructor(fn)
+        }
+        for path in paths & self._uses.keys():
+            for function in self._uses[path].functions:
+                if (path, function.line) in makers:
+                    continue
+                for use in function.uses:
+                    if use.how in ("write", "change") and name in use.path.split(".")[:2]:
+                        return True
+        return False
+
+    def _is_named_by_others(self, name: str, callback: Fn | None) -> bool:
+        here = (callback.source.path, callback.facts.line) if callback is not None else ("", 0)
+        return bool(self._named.get(name, set()) - {here}) or callback is None
+
+    def list_variables(self, path: str, callback: Fn | None) -> list[ObservedMember]:
+        """The variables outside of functions and classes that a file defines."""
+        source = next((one for one in self.code.sources if one.path == path), None)
+        if source is None:
+            return []
+        written = {
+            part
+            for fn in self.code.functions_in.get(path, ())
+            if fn.name and get_tail(fn.name) != "main"
+            for each in fn.facts.assignments
+            if not each.type
+            for part in _split_target(each.target)[:1]
+        }
+        found = []
+        for row in source.facts.constants:
+            if (
+                not row.type
+                or "const" in row.type.split()
+                or "constexpr" in row.type
+                or not row.name.replace("::", "").isidentifier()
+            ):
+                continue
+            last = get_tail(row.name)
+            found.append(_make_member(row, last in written, self._is_named_by_others(last, callback)))
+        return found
+
+    def find_package(self, path: str) -> Package | None:
+        """The package that a file belongs to."""
+        found = [one for one in self.workspace if not one.path or path.startswith(one.path + "/")]
+        return max(found, key=lambda one: len(one.path), default=None)
+
+    def find_standard(self, path: str) -> tuple[int, tuple[str, ...]]:
+        """The C++ standard of the targets that compile a file (17 at least), and their definitions."""
+        package = self.find_package(path)
+        targets = [one for one in package.build.targets if path in one.sources] if package is not None else []
+        standard = max((one.standard for one in targets if one.standard < 90), default=17)
+        definitions = tuple(dict.fromkeys(each for one in targets for each in one.definitions if "$" not in each))
+        return max(17, standard), definitions
+
+    def list_defining(self, symbols: set[str]) -> list[str]:
+        """The source files whose functions some mangled names may be."""
+        found: dict[str, None] = {}
+        for fn in self.code.functions:
+            if fn.source.facts.language != "cpp" or not fn.name or not fn.source.path.endswith(SOURCES):
+                continue
+            parts = split_name(fn.name)[-2:]
+            mark = "".join(f"{len(part)}{part}" for part in parts)
+            if len(parts) == 2 and parts[0] == parts[1]:
+                mark = f"{len(parts[0])}{parts[0]}C"
+            if any(mark in symbol for symbol in symbols):
+                found[fn.source.path] = None
+        return list(found)
+
+
+def _make_member(member: DataMember, written: bool, read: bool) -> ObservedMember:
+    return ObservedMember(member.name, member.type, _spell_literal(member.value), written, read)
+
+
+def _split_target(path: str) -> list[str]:
+    parts = [part for part in path.split(".") if part and part != "[]"]
+    return parts[1:2] if parts[:1] == ["this"] else parts[:1]
+
+
+def _spell_literal(value: FlowExpr | None) -> str:
+    if value is None:
+        return ""
+    if value.kind == "number" and value.text not in ("None",):
+        return {"True": "true", "False": "false"}.get(value.text, value.text)
+    if value.kind == "list" and len(value.parts) == 1:
+        return _spell_literal(value.parts[0])
+    if value.kind == "text":
+        shown = "".join(
+            f"\\{ord(c):03o}" if c in '"\\' or not " " <= c <= "~" else c for c in value.text if ord(c) < 256
+        )
+        return f'"{shown}"'
+    return ""

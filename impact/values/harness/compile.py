@@ -1,0 +1,445 @@
+"""Harnesses to LLVM IR, to programs that replay and fuzz, and to a folder for KLEE.
+
+Headers are looked for in this order: messages and facades of ours, the workspace, the machine's libraries; what is in
+none of them is an empty header, and what it would declare is worked out of the compiler's errors (stubs.py).
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import NamedTuple
+
+from ....edges.files import read_text, write_file
+from ....edges.groups import group_pairs
+from ..outcomes import Bounds
+from .facade import RUNTIME, find_facade, list_folders
+from .interfaces import KnownInterfaces, write_headers
+from .stubs import CompileError, StubTable, parse_errors
+from .toolchain import (
+    NO_CLANG,
+    NO_COMPILER,
+    NO_FUZZER,
+    CompilerRun,
+    find_clang,
+    find_fuzzer,
+    find_native_compiler,
+    run_compiler,
+)
+
+_ROUNDS_OF_HEADERS = 8
+_ROUNDS_OF_STUBS = 12
+_HEADER_BYTES = 4_000_000
+_SYSTEM = ("/usr/include", "/usr/local/include")
+_HEADERS = (".h", ".hpp", ".hh", ".hxx", ".ipp", ".inl", ".tpp")
+CHECKS = (
+    "signed-integer-overflow,integer-divide-by-zero,float-cast-overflow,shift,bounds,null,return,unreachable,vla-bound"
+)
+"""The checks of UBSan that are crashes; the same for the executor and for replays."""
+_IR_FLAGS = (
+    "-S", "-emit-llvm", "-O1", "-gline-tables-only", "-fno-vectorize", "-fno-slp-vectorize", "-fno-unroll-loops",
+    "-fno-jump-tables",
+    "-fno-threadsafe-statics", "-fno-discard-value-names", "-DRI_SYMBOLIC=1", "-D_GLIBCXX_EXTERN_TEMPLATE=0",
+    f"-fsanitize={CHECKS}", "-fno-sanitize-recover=all",
+)  # fmt: skip
+_NATIVE_FLAGS = (
+    "-O1", "-g", "-fno-omit-frame-pointer", f"-fsanitize=address,{CHECKS}", "-fno-sanitize-recover=all",
+    "-fno-optimize-sibling-calls",
+)  # fmt: skip
+
+
+class CannotCompile(Exception):
+    """A harness does not compile; the text is the first error, with its place."""
+
+
+@dataclass
+class SourceUnit:
+    """A translation unit. text: what is compiled; blocks: first and last line of each part of it that may be left out,
+    by name; standard: of C++, the last two digits of its year; definitions: of the preprocessor. stubs: what stands for
+    headers that are not here; missing: these headers. boost: whether our headers of Boost are used."""
+
+    name: str
+    text: str
+    blocks: dict[str, tuple[int, int]] = field(default_factory=dict)
+    standard: int = 17
+    definitions: tuple[str, ...] = ()
+    folders: tuple[str, ...] = ()
+    stubs: StubTable | None = None
+    missing: list[str] = field(default_factory=list)
+    boost: bool = True
+    dropped: dict[str, str] = field(default_factory=dict)
+
+
+class HarnessFiles(NamedTuple):
+    """What KLEE users are given. folder: where it was written; script: what compiles it."""
+
+    folder: Path
+    script: Path
+
+
+class Workshop:
+    """Compiles units of one workspace in a folder of its own. root: of the workspace; packages: folders of its
+    packages, relative to it; is_own: whether its code declares a name in a scope."""
+
+    def __init__(
+        self,
+        root: Path,
+        folder: Path,
+        definitions: KnownInterfaces,
+        packages: Iterable[str],
+        bounds: Bounds,
+        is_own: Callable[[str, str], bool] = lambda scope, name: False,
+    ):
+        self.root, self.folder, self.definitions, self.bounds = root.resolve(), folder, definitions, bounds
+        self.include = folder / "include"
+        self.include.mkdir(parents=True, exist_ok=True)
+        self._is_own = is_own
+        self._folders: dict[str, None] = {}
+        self._system: dict[str, None] = {}
+        for package in packages:
+            for inner in ("include", f"include/{package.rpartition('/')[2]}", "src", ""):
+                at = self.root / package / inner
+                if at.is_dir():
+                    self._folders[str(at)] = None
+        self._lines: dict[str, list[str]] = {}
+        self._precompiled: dict[Path, bool] = {}
+
+    # Headers
+
+    @cached_property
+    def _headers(self) -> dict[str, list[Path]]:
+        """The headers of the workspace, by the last part of their path."""
+        found = (
+            path for path in sorted(self.root.rglob("*"))
+            if path.suffix in _HEADERS and ".git" not in path.parts and path.is_file()
+        )  # fmt: skip
+        return group_pairs((path.name, path) for path in found)
+
+    def _make_header(self, header: str, unit: SourceUnit) -> None:
+        """Makes a header that is not found."""
+        if header.startswith("/") or ".." in header.split("/"):
+            unit.missing.append(header)
+            return
+        if (self.include / header).exists():
+            return
+        key = self.definitions.find_key_of_header(header)
+        if key:
+            self._write(write_headers(self.definitions, key))
+            if (self.include / header).exists():
+                return
+        facade = find_facade(header, self.definitions.ros, unit.boost)
+        if facade:
+            self._write({header: f"#pragma once\n#include <{facade}>\n"})
+            return
+        own = self._find_own(header)
+        if own is not None:
+            self._folders[str(own)] = None
+            return
+        for prefix in _SYSTEM:
+            at = next(iter(sorted(Path(prefix).glob(f"*/{header}"))), None)
+            if at is not None and self._is_library(at):
+                self._system[str(at)[: -len(header) - 1]] = None
+                return
+        self._write({header: "#pragma once\n"})
+        unit.missing.append(header)
+
+    def _find_own(self, header: str) -> Path | None:
+        """The folder of the workspace from which a header is found."""
+        for path in self._headers.get(header.rpartition("/")[2], ()):
+            if path.as_posix().endswith(f"/{header}"):
+                return Path(str(path)[: -len(header) - 1])
+        return None
+
+    def _is_library(self, path: Path) -> bool:
+        """Whether a header of the machine is of a library that ROS does not know."""
+        first = next((path.relative_to(one).parts[0] for one in _SYSTEM if path.is_relative_to(one)), "")
+        return not Path(f"/usr/share/{first}/package.xml").exists()
+
+    def _write(self, files: Mapping[str, str]) -> None:
+        for path, text in files.items():
+            at = self.include / path
+            if not at.exists():
+                at.parent.mkdir(parents=True, exist_ok=True)
+                write_file(at, text.encode())
+
+    def _find_headers(self, unit: SourceUnit, clang: str, path: Path) -> None:
+        """Provides all headers that a unit includes and that are not there."""
+        seen: set[str] = set()
+        for _ in range(_ROUNDS_OF_HEADERS):
+            command = [clang, *self._list_flags(unit), "-M", "-MG", str(path)]
+            run = run_compiler(command, path.parent)
+            if run.status != 0 and not run.out:
+                return
+            wanted = [each for each in _split_dependencies(run.out) if self._is_wanted(each, unit)]
+            new = [each for each in map(self._shorten, wanted) if each not in seen]
+            if not new:
+                return
+            for header in new:
+                seen.add(header)
+                self._make_header(header, unit)
+
+    def _is_wanted(self, path: str, unit: SourceUnit) -> bool:
+        """Whether a header is not there, or is one of ROS that is installed and stands in the way of ours."""
+        if not path.startswith("/"):
+            return True
+        at = next((Path(path).relative_to(one) for one in _SYSTEM if path.startswith(one + "/")), None)
+        if path.startswith("/opt/ros/"):
+            return True
+        if at is None:
+            return False
+        if at.parts[0] == "boost":
+            return unit.boost and bool(find_facade(str(at), self.definitions.ros))
+        ours = find_facade(str(at), self.definitions.ros) or self.definitions.find_key_of_header(str(at))
+        return bool(ours) or (len(at.parts) > 1 and not self._is_library(Path(path)))
+
+    def _shorten(self, path: str) -> str:
+        for prefix in _SYSTEM:
+            if path.startswith(prefix + "/"):
+                return path[len(prefix) + 1 :]
+        found = re.match(r"/opt/ros/\w+/include/(.*)", path)
+        if found is not None:
+            first, _, rest = found[1].partition("/")
+            return rest if rest.startswith(first + "/") else found[1]
+        return path
+
+    # Compiling
+
+    def _list_flags(self, unit: SourceUnit) -> list[str]:
+        folders = [str(self.include), *map(str, list_folders(self.definitions.ros))]
+        flags = [
+            "-x", "c++", f"-std=gnu++{unit.standard}", "-w", "-fno-access-control", f"-DRI_ROS={self.definitions.ros}",
+            f"-DRI_TEXT={self.bounds.text}", f"-DRI_ARRAY={self.bounds.array}", "-D_GLIBCXX_ASSERTIONS",
+            "-D_GNU_SOURCE",
+            "-U_FORTIFY_SOURCE", "-UNDEBUG",
+        ]  # fmt: skip
+        flags += [f"-D{each}" for each in unit.definitions]
+        flags += sorted(unit.stubs.flags) if unit.stubs is not None else []
+        flags += ["-include", str(self._find_stubs(unit))]
+        flags += [f"-I{each}" for each in (*folders, *unit.folders, *self._folders)]
+        return [*flags, *(each for one in self._system for each in ("-isystem", one))]
+
+    def _find_stubs(self, unit: SourceUnit) -> Path:
+        return self.folder / unit.name / "ri_stubs.hpp"
+
+    def _read_line(self, path: str, number: int) -> str:
+        if path not in self._lines:
+            try:
+                self._lines[path] = read_text(Path(path), _HEADER_BYTES, "replace").split("\n")
+            except OSError:
+                self._lines[path] = []
+        lines = self._lines[path]
+        return lines[number - 1] if 0 < number <= len(lines) else ""
+
+    def prepare(self, unit: SourceUnit, write: Callable[[Collection[str]], SourceUnit] | None = None) -> Path:
+        """Makes a unit compile: provides headers, stands for what these declare, and leaves parts out that do not
+        compile. write: the unit without some of its parts. Gives its path. Raises CannotCompile."""
+        clang = find_clang()
+        if not clang:
+            raise CannotCompile(NO_CLANG)
+        folder = self.folder / unit.name
+        folder.mkdir(parents=True, exist_ok=True)
+        path = folder / "harness.cpp"
+        unit.stubs = StubTable(self._read_line, self._is_own)
+        self._store(unit, path)
+        self._find_headers(unit, clang, path)
+        first: CompileError | None = None
+        for _ in range(_ROUNDS_OF_STUBS):
+            run = self._check(unit, clang, path)
+            if run.status == 0:
+                return path
+            errors = parse_errors(run.errors)
+            if not errors:
+                raise CannotCompile(run.errors.strip().split("\n")[0] or "the compiler failed")
+            missing = [each for each in errors if each.text.endswith("file not found")]
+            own = [each for each in errors if each.path == str(path)]
+            first = next((each for each in errors if each.path != str(path)), errors[0])
+            if missing:
+                for each in missing:
+                    self._make_header(each.text.split("'")[1], unit)
+                self._find_headers(unit, clang, path)
+                continue
+            if unit.boost and any("/boost/" in each.path and not each.path.startswith(str(RUNTIME)) for each in errors):
+                unit.boost = False
+                self._leave_boost()
+                continue
+            learned = unit.stubs.learn(errors)
+            if not learned and own and len(own) == len(errors) and write is not None:
+                self._drop_parts(unit, own, write, path)
+                continue
+            if not learned:
+                break
+            self._store(unit, path)
+        raise CannotCompile(self._describe(first) if first is not None else "does not compile")
+
+    def _drop_parts(self, unit: SourceUnit, errors: Sequence[CompileError], write, path: Path) -> None:
+        """Leaves the parts of a unit out that have errors."""
+        for each in errors:
+            name = next((n for n, (a, b) in unit.blocks.items() if a <= each.line <= b), None)
+            if name is None:
+                raise CannotCompile(self._describe(each))
+            unit.dropped.setdefault(name, each.text)
+        made = write(unit.dropped)
+        unit.text, unit.blocks = made.text, made.blocks
+        self._store(unit, path)
+
+    def _leave_boost(self) -> None:
+        shutil.rmtree(self.include / "boost", ignore_errors=True)
+
+    def _store(self, unit: SourceUnit, path: Path) -> None:
+        write_file(path, unit.text.encode())
+        write_file(self._find_stubs(unit), (unit.stubs or StubTable(self._read_line)).render().encode())
+        self._lines.pop(str(path), None)
+
+    def _check(self, unit: SourceUnit, clang: str, path: Path) -> CompilerRun:
+        flags = ["-ferror-limit=0", "-fno-caret-diagnostics", "-fno-spell-checking", "-ftemplate-backtrace-limit=1"]
+        base = self._list_flags(unit)
+        made = self._find_precompiled(unit, clang)
+        if made is not None:
+            base[base.index("-include") : base.index("-include")] = ["-include-pch", str(made)]
+        command = [clang, *base, *_IR_FLAGS, *flags, str(path), "-o", "harness.ll"]
+        return run_compiler(command, path.parent)
+
+    def _find_precompiled(self, unit: SourceUnit, clang: str) -> Path | None:
+        """The facade, compiled once for all units that are compiled alike; None for the others."""
+        if unit.definitions or unit.stubs is None or unit.stubs.flags or unit.stubs.has_hooks or not unit.boost:
+            return None
+        made = self.folder / f"facade{unit.standard}.pch"
+        if made not in self._precompiled:
+            header = self.folder / "facade.hpp"
+            name = "rclcpp/rclcpp.hpp" if self.definitions.ros == 2 else "ros/ros.h"
+            write_file(header, f"#pragma once\n#include <{name}>\n".encode())
+            plain = SourceUnit("facade", "", standard=unit.standard, stubs=unit.stubs)
+            self._find_headers(plain, clang, header)
+            flags = self._list_flags(plain)
+            at = flags.index("-include")
+            del flags[at : at + 2]
+            flags[flags.index("c++")] = "c++-header"
+            command = [clang, *flags, *_IR_FLAGS, str(header), "-o", str(made)]
+            command = [each for each in command if each not in ("-S", "-emit-llvm")]
+            self._precompiled[made] = run_compiler(command, self.folder).status == 0
+        return made if self._precompiled[made] else None
+
+    def _describe(self, error: CompileError) -> str:
+        path = Path(error.path)
+        if path.is_relative_to(self.root):
+            return f"{path.relative_to(self.root)}:{error.line}: {error.text}"
+        return f"{path.name}:{error.line}: {error.text}"
+
+    def read_ir(self, unit: SourceUnit) -> str:
+        """The IR of a unit that was prepared."""
+        return read_text(self.folder / unit.name / "harness.ll", 400_000_000, "replace")
+
+    def _describe_run(self, run: CompilerRun) -> str:
+        errors = parse_errors(run.errors)
+        return self._describe(errors[0]) if errors else (run.errors.strip().split("\n")[0] or "the compiler failed")
+
+    def build_replay(self, units: Sequence[SourceUnit]) -> Path:
+        """The program that replays witnesses of units that were prepared together. Raises CannotCompile."""
+        compiler = find_native_compiler()
+        if not compiler:
+            raise CannotCompile(NO_COMPILER)
+        extra = () if Path(compiler).name.startswith("clang") else ("-Wno-psabi",)
+        return self._build(units, compiler, (*_NATIVE_FLAGS, *extra), RUNTIME / "native.cpp", "replay")
+
+    def build_fuzzer(self, units: Sequence[SourceUnit]) -> Path:
+        """The program that libFuzzer drives. Raises CannotCompile."""
+        compiler = find_fuzzer()
+        if not compiler:
+            raise CannotCompile(NO_FUZZER)
+        flags = (
+            "-O1",
+            "-g",
+            "-fno-omit-frame-pointer",
+            f"-fsanitize=fuzzer,address,{CHECKS}",
+            "-fno-sanitize-recover=all",
+        )
+        return self._build(units, compiler, flags, RUNTIME / "fuzz.cpp", "fuzz")
+
+    def _build(
+        self, units: Sequence[SourceUnit], compiler: str, flags: Sequence[str], runtime: Path, name: str
+    ) -> Path:
+        folder = self.folder / units[0].name
+        program = folder / name
+        if program.exists():
+            return program
+        objects = []
+        for number, unit in enumerate(units):
+            at = self.folder / unit.name / f"{name}.o"
+            command = [compiler, *self._list_flags(unit), *flags, "-c", "harness.cpp", "-o", str(at)]
+            run = run_compiler(command, at.parent)
+            if run.status == 0:
+                objects.append(str(at))
+            elif number == 0:
+                raise CannotCompile(self._describe_run(run))
+        made = folder / f"{name}_runtime.o"
+        own = [each for each in flags if not each.startswith("-fsanitize=fuzzer")]
+        run = run_compiler(
+            [compiler, "-std=gnu++17", "-w", *own, f"-I{RUNTIME}", "-c", str(runtime), "-o", str(made)], folder
+        )
+        if run.status != 0:
+            raise CannotCompile(self._describe_run(run))
+        link = [compiler, *flags, *objects, str(made), "-o", str(program), "-pthread", "-Wl,--no-demangle"]
+        run = run_compiler(link, folder)
+        if run.status != 0:
+            unknown = folder / f"{name}_unknown.o"
+            self._write_unknown(folder, name, run.errors)
+            command = [compiler, "-w", "-std=gnu++17", f"-I{RUNTIME}", "-c", f"{name}_unknown.cpp", "-o", str(unknown)]
+            run = run_compiler(command, folder)
+            run = run_compiler([*link, str(unknown)], folder) if run.status == 0 else run
+        if run.status != 0:
+            raise CannotCompile(f"does not link: {run.errors.strip().splitlines()[0] if run.errors.strip() else ''}")
+        return program
+
+    def _write_unknown(self, folder: Path, name: str, errors: str) -> None:
+        """Functions and data that nothing defines: to use one ends a replay as unknown."""
+        lines = ["#include <rosimpact_values.h>"]
+        for number, symbol in enumerate(sorted(set(re.findall(r"undefined reference to [`']([^'\s]+)'", errors)))):
+            if symbol.startswith(("_ZTV", "_ZTI", "_ZTS", "_ZGV")):
+                lines.append(f'extern "C" void *ri_data_{number}[64] __asm__("{symbol}"); void *ri_data_{number}[64];')
+            else:
+                lines.append(f'extern "C" void ri_unknown_{number}() __asm__("{symbol}");')
+                lines.append(f'extern "C" void ri_unknown_{number}() {{ ri_unknown("{symbol}"); }}')
+        write_file(folder / f"{name}_unknown.cpp", "\n".join([*lines, ""]).encode())
+
+    def emit_klee(self, unit: SourceUnit, entry: str, folder: Path) -> HarnessFiles:
+        """Writes a folder from which KLEE is run as it is: the harness, its headers, a runtime and a script."""
+        folder.mkdir(parents=True, exist_ok=True)
+        shutil.copytree(self.include, folder / "include", dirs_exist_ok=True)
+        for one in reversed(list_folders(self.definitions.ros)):
+            shutil.copytree(one, folder / "include", dirs_exist_ok=True)
+        for name in ("harness.cpp", "ri_stubs.hpp"):
+            shutil.copy(self.folder / unit.name / name, folder / name)
+        shutil.copy(RUNTIME / "klee.cpp", folder / "klee_runtime.cpp")
+        skipped = {f"-I{each}" for each in (self.include, *list_folders(self.definitions.ros))}
+        flags = [each for each in self._list_flags(unit) if each not in skipped and each != str(self._find_stubs(unit))]
+        flags.remove("-include")
+        quoted = " ".join(f"'{each}'" for each in flags)
+        script = folder / "run_klee.sh"
+        lines = [
+            "#!/bin/sh", "# Compiles the harness to bitcode and runs KLEE on it.", "set -e", 'cd "$(dirname "$0")"',
+            'CLANG=${CLANG:-clang++}', 'LINK=${LLVM_LINK:-llvm-link}', "KLEE=${KLEE:-klee}",
+            f'FLAGS="-Iinclude {_escape(quoted)} -fno-threadsafe-statics -O1 -Xclang -disable-llvm-passes -g"',
+            f"CHECKS='-fsanitize={CHECKS} -fno-sanitize-recover=all'",
+            "eval $CLANG $FLAGS $CHECKS -include ri_stubs.hpp -emit-llvm -c harness.cpp -o harness.bc",
+            f'FLAGS="$FLAGS -DRI_KLEE_ENTRY={entry} ${{KLEE_INCLUDE:+-I$KLEE_INCLUDE}}"',
+            "eval $CLANG $FLAGS -emit-llvm -c klee_runtime.cpp -o klee_runtime.bc",
+            "$LINK harness.bc klee_runtime.bc -o whole.bc",
+            'exec $KLEE --libc=klee --max-time="${SECONDS_AT_MOST:-60}" --emit-all-errors whole.bc', "",
+        ]  # fmt: skip
+        write_file(script, "\n".join(lines).encode())
+        script.chmod(0o755)
+        return HarnessFiles(folder, script)
+
+
+def _escape(text: str) -> str:
+    return text.replace("\\", "\\\\").replace('"', '\\"').replace("$", "\\$")
+
+
+def _split_dependencies(text: str) -> list[str]:
+    """The paths that a make rule names behind its target."""
+    rest = text.partition(":")[2].replace("\\\n", " ")
+    return [each.replace("\\ ", " ") for each in re.findall(r"(?:\\ |\S)+", rest)]

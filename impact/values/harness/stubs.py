@@ -1,0 +1,291 @@
+"""What headers that are not here declare, as far as a file uses it: worked out of the compiler's errors.
+
+Every name becomes something that takes any use (`ri::Anything`) and says in the callback that nothing is known of it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+_ERROR = re.compile(r"^(?P<path>[^\s:][^:]*):(?P<line>\d+):(?P<column>\d+): (?:fatal )?error: (?P<text>.*)$")
+_QUOTED = re.compile(r"'([^']*)'")
+_OWN = ("std", "__gnu_cxx", "ri")
+_NAME = re.compile(r"[A-Za-z_]\w*")
+_HOOKS = frozenset(
+    ("rclcpp::Node", "rclcpp::Publisher", "rclcpp::Subscription", "rclcpp::QoS", "rclcpp::NodeOptions",
+     "ros::NodeHandle", "ros::Publisher", "XmlRpc::XmlRpcValue", "ri::Anything")
+)  # fmt: skip
+
+
+class CompileError(NamedTuple):
+    """An error of a compiler. text: without its place."""
+
+    path: str
+    line: int
+    column: int
+    text: str
+
+
+def parse_errors(output: str) -> list[CompileError]:
+    """The errors in what a compiler wrote."""
+    found = (_ERROR.match(line) for line in output.splitlines())
+    return [CompileError(m["path"], int(m["line"]), int(m["column"]), m["text"]) for m in found if m is not None]
+
+
+class StubTable:
+    """What is declared so far. read_line: a line of a file, counted from 1, empty where there is none. is_own: whether
+    the code itself declares a name in a scope, so that it is not for us to declare."""
+
+    def __init__(
+        self, read_line: Callable[[str, int], str], is_own: Callable[[str, str], bool] = lambda scope, name: False
+    ):
+        self._read_line, self._is_own = read_line, is_own
+        # Scope and name to what it is: `namespace`, `type`, `template`, `function`, `variable`, `constant`.
+        self._names: dict[tuple[str, str], str] = {}
+        # Class to its members and what these are: `member`, `function`, `type`.
+        self._members: dict[str, dict[str, str]] = {}
+        self.flags: set[str] = set()
+
+    def __bool__(self) -> bool:
+        return bool(self._names or self._members)
+
+    @property
+    def has_hooks(self) -> bool:
+        """Whether something is added to classes of the facades."""
+        return bool(_HOOKS & self._members.keys())
+
+    def list_names(self) -> list[str]:
+        """What is stood for, by its full name."""
+        return sorted(
+            f"{scope}::{name}".lstrip(":") for (scope, name), kind in self._names.items() if kind != "namespace"
+        )
+
+    def learn(self, errors: Sequence[CompileError]) -> bool:
+        """Takes in what errors say; gives whether anything new came of them. What is wrong with a macro or a type has
+        further errors follow, so that these are looked at only where there is nothing of the kind."""
+        for rank in (_is_of_macro, _is_of_type, lambda _: True):
+            if any([self._learn_one(each) for each in errors if rank(each)]):
+                return True
+        return False
+
+    def _learn_one(self, error: CompileError) -> bool:
+        text, quoted = error.text, _QUOTED.findall(error.text)
+        if _is_of_macro(error):
+            flag = f"-D{quoted[0].rpartition(' ')[2]}="
+            known = flag in self.flags
+            self.flags.add(flag)
+            return not known
+        if "marked 'override' but does not override" in text or "can be marked 'override'" in text:
+            known = "-Doverride=" in self.flags
+            self.flags.add("-Doverride=")
+            return not known
+        if "expected namespace name" in text or "is not a namespace name" in text:
+            return self._learn_namespace(error)
+        if not quoted:
+            return False
+        name = quoted[0]
+        if text.startswith("no type named"):
+            return self._add_type(quoted[1], name, "type", "in namespace" in text)
+        if text.startswith(("no template named", "no class template named")):
+            return self._add_type(
+                quoted[1] if len(quoted) > 1 else "", name, "template", len(quoted) < 2 or "in namespace" in text
+            )
+        if text.startswith("no member named") and len(quoted) > 1:
+            if "in namespace" in text or "in the global namespace" in text:
+                return self._add_name(quoted[1], name, self._guess(error))
+            return self._add_member(quoted[1], name, self._guess(error))
+        if text.startswith("unknown type name"):
+            return self._add_name("", name, "template" if self._peek(error, name).startswith("<") else "type")
+        if text.startswith(("use of undeclared identifier", "unknown class name", "undeclared")):
+            return self._add_name("", name, self._guess(error))
+        if text.startswith("expected class name"):
+            return self._learn_base(error)
+        if "unexpected namespace name" in text or "unexpected type name" in text:
+            return self._add_name("", name, "type")
+        if "template template" in text or "template argument for template type parameter must be a type" in text:
+            return False
+        return False
+
+    def _learn_namespace(self, error: CompileError) -> bool:
+        line = self._read_line(error.path, error.line)
+        found = re.search(r"(?:using\s+namespace|namespace\s+\w+\s*=)\s+(?:::)?([\w:]+)", line)
+        return found is not None and self._add_namespace(found[1])
+
+    def _add_namespace(self, full: str) -> bool:
+        scope, new = "", False
+        for part in full.split("::"):
+            if self._names.get((scope, part)) is None and part not in _OWN:
+                self._names[scope, part] = "namespace"
+                new = True
+            scope = f"{scope}::{part}".lstrip(":")
+        return new
+
+    def _learn_base(self, error: CompileError) -> bool:
+        line = self._read_line(error.path, error.line)
+        rest = line[error.column - 1 :]
+        found = _NAME.match(rest)
+        if found is None:
+            return False
+        before = re.search(r"((?:\w+::)+)$", line[: error.column - 1])
+        scope = before[1].rstrip(":") if before is not None else ""
+        return self._add_type(scope, found[0], "template" if rest[found.end() :].startswith("<") else "type", True)
+
+    def _peek(self, error: CompileError, name: str) -> str:
+        """What follows a name in the line of an error."""
+        line = self._read_line(error.path, error.line)
+        at = line.find(name, max(error.column - 1, 0))
+        return line[at + len(name) :].lstrip() if at >= 0 else ""
+
+    def _guess(self, error: CompileError) -> str:
+        """What a name is by how it is used."""
+        name = _QUOTED.findall(error.text)[0]
+        rest = self._peek(error, name)
+        line = self._read_line(error.path, error.line)
+        before = line[: max(error.column - 1, 0)].rstrip()
+        before = re.sub(r"(\w+::)+$", "", before).rstrip()
+        if rest.startswith("::"):
+            return "namespace"
+        if before.endswith("case"):
+            return "constant"
+        if before.endswith("new"):
+            return "type"
+        if rest.startswith("<") and not re.match(r"<\s*[\w.()+\-]+\s*[;)&|]", rest) and ">" in rest:
+            behind = rest[rest.rindex(">") + 1 :].lstrip()
+            return "function" if behind.startswith("(") and not name[:1].isupper() else "template"
+        if rest.startswith("("):
+            return "type" if name[:1].isupper() and not name.isupper() else "function"
+        if (
+            rest.startswith("{")
+            or re.match(r"(const\b\s*)?[&*]*\s*[A-Za-z_]\w*\s*[;=,({)\[]", rest)
+            or re.match(r"[&*]+\s*[,>)]", rest)
+        ):
+            return "type"
+        if re.match(r"(>|,)", rest) and re.search(r"<[^<>]*$", before) and name[:1].isupper():
+            return "type"
+        return "variable"
+
+    def _add_type(self, scope: str, name: str, kind: str, in_namespace: bool) -> bool:
+        scope = _strip_arguments(scope)
+        if not in_namespace and scope:
+            return self._add_member(scope, name, "type")
+        return self._add_name(scope, name, kind)
+
+    def _add_name(self, scope: str, name: str, kind: str) -> bool:
+        scope = _strip_arguments(scope).removeprefix("::")
+        if (
+            scope.partition("::")[0] in _OWN
+            or not _NAME.fullmatch(name)
+            or (kind != "namespace" and self._is_own(scope, name))
+        ):
+            return False
+        if scope:
+            self._add_namespace(scope)
+        known = self._names.get((scope, name))
+        if known is not None and _RANKS.index(known) >= _RANKS.index(kind):
+            return False
+        self._names[scope, name] = kind
+        return True
+
+    def _add_member(self, owner: str, name: str, kind: str) -> bool:
+        owner = _strip_arguments(owner).replace("const ", "").strip(" &*").removeprefix("::")
+        scope, _, last = owner.rpartition("::")
+        if not _NAME.fullmatch(name):
+            return False
+        if owner not in _HOOKS and self._names.get((scope, last)) not in ("type", "template"):
+            return False
+        members = self._members.setdefault(owner, {})
+        kind = {"template": "function", "function": "function", "type": "type"}.get(kind, "member")
+        if name in members and (members[name] == kind or kind == "member"):
+            return False
+        members[name] = kind
+        return True
+
+    def render(self) -> str:
+        """The header, to be included before all else."""
+        lines = ["#pragma once"]
+        for owner in sorted(_HOOKS & self._members.keys()):
+            members = " ".join(self._spell_members(owner, "ri::Anything" if owner == "ri::Anything" else ""))
+            lines.append(f"#define RI_EXTRA_{owner.replace('::', '_')} {members}")
+        lines.append('#include "ri_core.hpp"')
+        lines += self._define_members()
+        for (scope, name), kind in sorted(self._names.items(), key=_get_order):
+            opened = "".join(f"namespace {part} {{ " for part in scope.split("::") if part)
+            closed = " }" * opened.count("{")
+            full = f"{scope}::{name}".lstrip(":")
+            lines.append(f"{opened}{self._spell(full, name, kind)}{closed}")
+        return "\n".join([*lines, ""])
+
+    def _spell(self, full: str, name: str, kind: str) -> str:
+        if kind == "namespace":
+            return f"namespace {name} {{ }}"
+        if kind == "function":
+            body = f'{{ ri::unknown("{full}"); return {{}}; }}'
+            return f"template <class... RiT, class... RiA> ri::Anything {name}(RiA &&...) {body}"
+        if kind == "variable":
+            return f"inline ri::Anything {name};"
+        if kind == "constant":
+            return f"inline constexpr int {name} = {_make_number(full)};"
+        members = " ".join(self._spell_members(full, name))
+        head = "template <class... RiT> " if kind == "template" else ""
+        return f"{head}struct {name} : ri::Anything {{ RI_STAND_IN({name}) {members} }};"
+
+    def _spell_members(self, owner: str, own: str) -> list[str]:
+        rows = []
+        for name, kind in sorted(self._members.get(owner, {}).items()):
+            if kind == "type":
+                pointed = own.rpartition("::")[2] or "ri::Anything"
+                constant = "const " if "Const" in name else ""
+                made = "std::unique_ptr" if "Unique" in name else "std::shared_ptr" if name.endswith("Ptr") else ""
+                rows.append(
+                    f"using {name} = {made}<{constant}{pointed}>;"
+                    if made
+                    else f"struct {name} : ri::Anything {{ RI_STAND_IN({name}) }};"
+                )
+            elif kind == "function":
+                body = f'{{ ri::unknown("{owner}::{name}"); return {{}}; }}'
+                rows.append(f"template <class... RiM, class... RiB> static ri::Anything {name}(RiB &&...) {body}")
+            elif owner == "ri::Anything":
+                rows.append(f"static Anything {name};")
+            else:
+                rows.append(f"ri::Anything {name};")
+        return rows
+
+    def _define_members(self) -> list[str]:
+        """The definitions of the members of what stands for anything."""
+        names = [n for n, kind in sorted(self._members.get("ri::Anything", {}).items()) if kind == "member"]
+        return [f"inline ri::Anything ri::Anything::{name};" for name in names]
+
+
+def _is_of_macro(error: CompileError) -> bool:
+    """Whether a word stands before a class's name that is a macro of a header that is not here."""
+    return re.search(r"incomplete type '(?:class|struct) [A-Z][A-Z0-9_]+'", error.text) is not None
+
+
+def _is_of_type(error: CompileError) -> bool:
+    return error.text.startswith(
+        ("no type named", "no template named", "no class template", "unknown type name", "unknown class name",
+         "expected class name", "expected namespace name")
+    ) or "in namespace" in error.text  # fmt: skip
+
+
+_RANKS = ("namespace", "variable", "function", "constant", "type", "template")
+
+
+def _get_order(row: tuple[tuple[str, str], str]) -> tuple[int, int, str, str]:
+    (scope, name), kind = row
+    return (0 if kind in ("type", "template") else 1, scope.count("::"), scope, name)
+
+
+def _strip_arguments(name: str) -> str:
+    kept, depth = [], 0
+    for character in name:
+        depth += (character == "<") - (character == ">")
+        if depth == 0 and character != ">":
+            kept.append(character)
+    return "".join(kept)
+
+
+def _make_number(text: str) -> int:
+    return sum(ord(c) * (31**n % 9973) for n, c in enumerate(text)) % 1_000_003

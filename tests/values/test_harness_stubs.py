@@ -1,0 +1,72 @@
+"""What headers that are not here declare, worked out of what a compiler says."""
+
+import pytest
+from rosimpact.impact.values.harness.stubs import StubTable, parse_errors
+
+LINES = {
+    1: "  pcl::PointCloud<Point> cloud;",
+    2: '  vendor::open("can0");',
+    3: "  driver.start();",
+    4: "class VENDOR_EXPORT Node : public Base {",
+    5: "using namespace vendor::inner;",
+    6: "    case vendor::RED: break;",
+    7: "  vendor::Mode mode = vendor::AUTO;",
+}
+
+
+def learn(*rows, is_own=lambda scope, name: False):
+    table = StubTable(lambda path, line: LINES.get(line, ""), is_own)
+    output = "\n".join(f"/ws/a.cpp:{line}:{column}: error: {text}" for line, column, text in rows)
+    return table, table.learn(parse_errors(output))
+
+
+def test_errors_are_read():
+    found = parse_errors("/ws/a.cpp:3:7: error: no\nnothing\n/ws/b.h:1:1: fatal error: 'x.h' file not found\n")
+    assert [(one.path, one.line, one.column, one.text) for one in found] == [
+        ("/ws/a.cpp", 3, 7, "no"), ("/ws/b.h", 1, 1, "'x.h' file not found"),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "row, expected",
+    [
+        (
+            (1, 8, "no template named 'PointCloud' in namespace 'pcl'"),
+            "namespace pcl { template <class... RiT> struct PointCloud",
+        ),
+        ((7, 11, "no type named 'Mode' in namespace 'vendor'"), "namespace vendor { struct Mode : ri::Anything"),
+        ((2, 11, "no member named 'open' in namespace 'vendor'"), "ri::Anything open(RiA &&...)"),
+        ((6, 18, "no member named 'RED' in namespace 'vendor'"), "inline constexpr int RED ="),
+        ((7, 31, "no member named 'AUTO' in namespace 'vendor'"), "inline ri::Anything AUTO;"),
+        ((2, 3, "use of undeclared identifier 'vendor'"), "namespace vendor { }"),
+        ((5, 17, "expected namespace name"), "namespace vendor { namespace inner { } }"),
+        ((3, 3, "no member named 'start' in 'ri::Anything'"), "#define RI_EXTRA_ri_Anything"),
+    ],
+)
+def test_what_is_learnt(row, expected):
+    table, new = learn(row)
+    assert new and expected in table.render()
+    assert not table.learn(parse_errors(f"/ws/a.cpp:{row[0]}:{row[1]}: error: {row[2]}"))
+
+
+def test_members_are_of_what_is_stood_for():
+    table, _ = learn((7, 11, "no type named 'Driver' in namespace 'vendor'"))
+    assert table.learn(parse_errors("/ws/a.cpp:3:10: error: no member named 'start' in 'vendor::Driver'"))
+    assert "static ri::Anything start(" in table.render()
+    assert not table.learn(parse_errors("/ws/a.cpp:3:10: error: no member named 'start' in 'own::Class'"))
+
+
+def test_macros_come_first():
+    table, _ = learn(
+        (4, 32, "variable has incomplete type 'class VENDOR_EXPORT'"), (9, 1, "use of undeclared identifier 'member_'")
+    )
+    assert table.flags == {"-DVENDOR_EXPORT="} and "member_" not in table.render()
+
+
+@pytest.mark.parametrize(
+    "row",
+    [(1, 1, "no type named 'vektor' in namespace 'std'"), (1, 1, "unknown type name 'Own'"), (1, 1, "expected ';'")],
+)
+def test_nothing_is_made_up(row):
+    table, new = learn(row, is_own=lambda scope, name: name == "Own")
+    assert not new and not table.list_names()
