@@ -25,7 +25,7 @@ _FEW = 8
 _STEPS = 12
 
 
-class SentValues(NamedTuple):
+class SentProjection(NamedTuple):
     """A field that is sent. publisher: its name; path: of the field; places: where it is published."""
 
     publisher: str
@@ -49,7 +49,7 @@ class _Collected:
     places: dict[CodeLine, None] = field(default_factory=dict)
 
 
-def list_sent_fields(exploration: Exploration, seconds: float = 10.0) -> list[SentValues]:
+def list_sent_fields(exploration: Exploration, seconds: float = 10.0) -> list[SentProjection]:
     """Fields that are published on some path, with the values that they can have. A path that is unknown counts as far
     as it went; bytes of texts are left out."""
     collected: dict[tuple[str, str], _Collected] = {}
@@ -67,7 +67,7 @@ def list_sent_fields(exploration: Exploration, seconds: float = 10.0) -> list[Se
                     each.terms.append((path, value))
     solving = make_solving(exploration, time.monotonic() + seconds)
     return [
-        SentValues(
+        SentProjection(
             publisher, name, each.kind, each.bits, each.is_signed, _find_values(each, solving), tuple(each.places)
         )
         for (publisher, name), each in collected.items()
