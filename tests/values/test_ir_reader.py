@@ -5,7 +5,7 @@ from rosimpact.impact.values.ir.explore import explore
 from rosimpact.impact.values.ir.layout import StructureType
 from rosimpact.impact.values.ir.module import UNDEFINED, BytesConstant, Composite, GlobalVariable
 from rosimpact.impact.values.ir.reader import Program
-from rosimpact.impact.values.outcomes import Bounds, Reaction
+from rosimpact.impact.values.outcomes import NOWHERE, Bounds, CodeLine, CrashKind, Reaction
 
 LINES = {
     "add nuw nsw i32 %a, 1": "add",
@@ -153,3 +153,73 @@ def test_what_is_not_understood_is_unknown_and_never_an_error(text):
     assert {path.result for path in exploration.paths} <= {Reaction.UNKNOWN, Reaction.CRASH}
     assert all(path.reason for path in exploration.paths if path.result is Reaction.UNKNOWN)
     assert exploration.paths
+
+
+def test_time_paths_and_memory_have_bounds():
+    counting = """
+define void @entry() {
+  br label %1
+1:
+  %n = phi i64 [ 0, %0 ], [ %next, %1 ]
+  %next = add i64 %n, 1
+  %over = icmp eq i64 %next, 1000000000000
+  br i1 %over, label %2, label %1
+2:
+  ret void
+}
+"""
+    short = explore([counting], "entry", Bounds(seconds=0.3), lambda path: True)
+    assert [(path.result, path.reason) for path in short.paths] == [(Reaction.UNKNOWN, "time limit")]
+    assert short.seconds < 30
+    many = """
+declare i64 @ri_integer(ptr, i32, i32)
+@name = constant [2 x i8] c"x\\00"
+define void @entry() {
+  %x = call i64 @ri_integer(ptr @name, i32 64, i32 0)
+  switch i64 %x, label %2 [
+    i64 1, label %1
+    i64 3, label %3
+    i64 4, label %4
+  ]
+1:
+  ret void
+2:
+  ret void
+3:
+  ret void
+4:
+  ret void
+}
+"""
+    few = explore([many], "entry", Bounds(paths=2, seconds=30), lambda path: True)
+    assert len(few.paths) == 2
+    assert few.left == 2
+    none = explore([many], "entry", Bounds(memory=1, seconds=30), lambda path: True)
+    assert (none.paths, none.left) == ([], 1)
+
+
+def test_a_loop_that_comes_to_the_same_state_is_endless():
+    text = """
+declare i64 @ri_integer(ptr, i32, i32)
+@name = constant [2 x i8] c"x\\00"
+@cell = global i32 5
+define void @entry() !dbg !3 {
+  %x = call i64 @ri_integer(ptr @name, i32 64, i32 0), !dbg !5
+  br label %loop, !dbg !5
+loop:
+  store i32 7, ptr @cell, !dbg !5
+  %more = icmp ugt i64 %x, 9, !dbg !5
+  br i1 %more, label %loop, label %end, !dbg !5
+end:
+  ret void, !dbg !5
+}
+!1 = !DIFile(filename: "node.cpp", directory: "/ws/src")
+!3 = distinct !DISubprogram(name: "entry", file: !1, line: 1)
+!5 = !DILocation(line: 12, column: 1, scope: !3)
+"""
+    exploration = explore([text], "entry", Bounds(seconds=60), lambda path: path.startswith("/ws/"))
+    found = {(path.result, path.crash, path.place) for path in exploration.paths}
+    assert found == {
+        (Reaction.IGNORED, None, NOWHERE),
+        (Reaction.CRASH, CrashKind.ENDLESS, CodeLine("/ws/src/node.cpp", 12)),
+    }

@@ -128,7 +128,8 @@ _SETTINGS = frozenset(("__libc_single_threaded",))
 
 
 class Executor:
-    """One exploration of one function. models: what is called instead of functions of some names."""
+    """One exploration of one function. find_call_model: what is called instead of a function of some name.
+    fill_outside: fills a variable that no module defines."""
 
     def __init__(
         self,
@@ -136,6 +137,7 @@ class Executor:
         bounds: Bounds,
         is_workspace_file: Callable[[str], bool],
         find_call_model: Callable[[str], CallModel | None],
+        fill_outside: Callable[[Executor, str, MemoryObject], None],
     ):
         self.program = program
         self.bounds = bounds
@@ -156,6 +158,7 @@ class Executor:
         self.kept: list[Any] = []
         self.type_numbers: dict[str, int] = {}
         self._find_call_model = find_call_model
+        self._fill_outside = fill_outside
         self._models: dict[str, CallModel | None] = {}
         self._loop_bound = max(bounds.loops, bounds.text + 2, bounds.array + 2)
         self._handlers: dict[str, Callable[[State, Frame, Instruction], None]] = {
@@ -296,6 +299,8 @@ class Executor:
         self.made_globals[number] = (key, memory_object)
         if key in _KNOWN_OUTSIDE:
             memory_object.cells[0] = (1, _KNOWN_OUTSIDE[key])
+        if is_outside:
+            self._fill_outside(self, key, memory_object)
         if is_outside and is_standard_exception(key.removeprefix("_ZTV")):
             fill_standard_table(self, State(), key, memory_object)
         if variable is not None and variable.value is not None:

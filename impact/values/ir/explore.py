@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from ..outcomes import Bounds, CallbackPath, Exploration, Reaction
-from . import harness_calls, library_containers, library_numbers, library_runtime, library_text
+from . import harness_calls, library_containers, library_numbers, library_runtime, library_streams, library_text
 from .executor import Executor
 from .layout import UnknownSizeError
 from .models import find_model
@@ -13,7 +13,7 @@ from .module import ReadingError
 from .reader import Program
 
 # These modules register what they model.
-_LIBRARIES = (harness_calls, library_containers, library_numbers, library_runtime, library_text)
+_LIBRARIES = (harness_calls, library_containers, library_numbers, library_runtime, library_streams, library_text)
 
 
 def explore(
@@ -36,4 +36,4 @@ def explore_program(
     program: Program, entry: str, bounds: Bounds, is_workspace_file: Callable[[str], bool]
 ) -> Exploration:
     """The same for a program that was read: several callbacks of it need not read it again."""
-    return Executor(program, bounds, is_workspace_file, find_model).explore(entry)
+    return Executor(program, bounds, is_workspace_file, find_model, library_streams.fill_outside_stream).explore(entry)

@@ -493,38 +493,3 @@ def print_text(call: Call) -> Any:
     add_log(call.state, "stdout")
     type_ = call.instruction.type
     return 1 if type_.size else None
-
-
-_STREAMS = ("_ZSt4cout", "_ZSt4cerr", "_ZSt4clog")
-
-
-def _is_console(call: Call, pointer: Any) -> bool:
-    return isinstance(pointer, Pointer) and call.run.made_globals.get(pointer.object, ("", None))[0] in _STREAMS
-
-
-@model_pattern(
-    r"_ZNSo(?:ls|9_M_insert|3put|5flush|5write)\w*|_ZSt(?:ls|4endl|4ends|5flush|16__ostream_insert)I?\w*"
-    r"|_ZStlsISt11char_traits\w*|_ZStlsIcSt11char_traits\w*"
-)
-def insert_into_stream(call: Call) -> Any:
-    if not call.instruction.type.is_pointer or not isinstance(call.arguments[0], Pointer):
-        raise call.run.make_unknown(f"a call of `{call.name}`")
-    if _is_console(call, call.arguments[0]):
-        add_log(call.state, "stdout")
-    return call.arguments[0]
-
-
-@model_pattern(
-    r"_ZNSt7__cxx11\d+basic_(?:string|ostring|istring)streamIcSt11char_traitsIcESaIcEE(?:C[12]|D[12])\w*"
-    r"|_ZNSt8ios_base(?:C2|D2)Ev|_ZNSt6localeC1Ev|_ZNSt6localeD1Ev|_ZNSt9basic_iosIcSt11char_traitsIcEE4initE\w+"
-)
-def skip_stream(call: Call) -> Any:
-    return None
-
-
-@model_pattern(
-    r"_ZNKSt7__cxx11\d+basic_(?:string|ostring|istring)streamIcSt11char_traitsIcESaIcEE3strEv"
-    r"|_ZNKSt7__cxx1115basic_stringbufIcSt11char_traitsIcESaIcEE3strEv"
-)
-def read_stream(call: Call) -> Any:
-    fill_any_text(call, call.arguments[0], "the text of a stream")

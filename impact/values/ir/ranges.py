@@ -43,8 +43,8 @@ _UNSIGNED = {
 class Ranges:
     """Spans of terms, each found once."""
 
-    def __init__(self, inputs: Mapping[str, SymbolicInput], known: Mapping[str, FloatSpan] | None = None):
-        """known: spans of some inputs that are floats."""
+    def __init__(self, inputs: Mapping[str, SymbolicInput], known: Mapping[str | int, FloatSpan] | None = None):
+        """known: spans of some floats, as `narrow_floats` gives them. The terms must live as long as this."""
         self._inputs = inputs
         self._known = known or {}
         self._spans: dict[int, tuple[Any, Span]] = {}
@@ -101,7 +101,10 @@ class Ranges:
                 continue
             pending.pop()
             if each.get_id() not in self._float_spans:
-                self._float_spans[each.get_id()] = (each, self._derive_float(each))
+                span = self._derive_float(each)
+                if each.get_id() in self._known:
+                    span = _narrow_span(span, self._known[each.get_id()])
+                self._float_spans[each.get_id()] = (each, span)
         return self._float_spans[term.get_id()][1]
 
     def _derive_float(self, term: Any) -> FloatSpan:
@@ -114,7 +117,7 @@ class Ranges:
         if kind == z3.Z3_OP_FPA_TO_FP:
             return self._derive_conversion(term, parts, bits)
         if kind == z3.Z3_OP_ITE:
-            return _join_floats(parts)
+            return self._derive_choice(term, {}, 4)
         if kind == z3.Z3_OP_FPA_NEG:
             return FloatSpan(-parts[0].high, -parts[0].low, parts[0].has_nan)
         if kind == z3.Z3_OP_FPA_ABS:
@@ -133,6 +136,25 @@ class Ranges:
             is_square = kind == z3.Z3_OP_FPA_MUL and term.arg(1).eq(term.arg(2))
             return _combine_floats(kind, parts[0], parts[1], bits, is_square)
         return _ANY_FLOAT
+
+    def _derive_choice(self, term: Any, known: Mapping[int, FloatSpan], depth: int) -> FloatSpan:
+        """Of a choice: where its condition compares a term with a number (a clamp), each side knows the answer. known:
+        spans of terms, by their numbers."""
+        if term.decl().kind() != z3.Z3_OP_ITE or depth == 0:
+            span = self.find_float_span(term) if depth < 4 else _ANY_FLOAT
+            return _narrow_span(span, known[term.get_id()]) if term.get_id() in known else span
+        sides = []
+        for side, is_negated in ((term.arg(1), False), (term.arg(2), True)):
+            condition, negated = term.arg(0), is_negated
+            if condition.decl().kind() == z3.Z3_OP_NOT:
+                condition, negated = condition.arg(0), not negated
+            compared = _read_comparison(condition, negated)
+            own = known
+            if compared is not None:
+                number = compared[0].get_id()
+                own = {**known, number: _narrow_span(known.get(number, _ANY_FLOAT), compared[1])}
+            sides.append(self._derive_choice(side, own, depth - 1))
+        return _join_floats(sides)
 
     def _derive_conversion(self, term: Any, parts: list[FloatSpan], bits: int) -> FloatSpan:
         if parts:
@@ -312,9 +334,10 @@ def _compare_floats(kind: int, left: FloatSpan, right: FloatSpan) -> bool | None
     return False if left.high < right.low or right.high < left.low else None
 
 
-def narrow_floats(conditions: Iterable[Any]) -> dict[str, FloatSpan]:
-    """Spans of inputs that some of the conditions compare with numbers."""
-    spans: dict[str, FloatSpan] = {}
+def narrow_floats(conditions: Iterable[Any]) -> dict[str | int, FloatSpan]:
+    """Spans of terms that some of the conditions compare with numbers: inputs by their names, others by their numbers
+    in z3."""
+    spans: dict[str | int, FloatSpan] = {}
     pending = list(conditions)
     while pending:
         condition = pending.pop()
@@ -324,18 +347,19 @@ def narrow_floats(conditions: Iterable[Any]) -> dict[str, FloatSpan]:
             continue
         is_negated = kind == z3.Z3_OP_NOT
         inner = condition.arg(0) if is_negated else condition
-        narrowed = _read_bound(inner, is_negated)
-        if narrowed is not None:
-            name, span = narrowed
-            before = spans.get(name, _ANY_FLOAT)
-            spans[name] = FloatSpan(
-                max(before.low, span.low), min(before.high, span.high), before.has_nan and span.has_nan
-            )
+        compared = _read_comparison(inner, is_negated)
+        if compared is not None:
+            key = _read_input(compared[0]) or compared[0].get_id()
+            spans[key] = _narrow_span(spans.get(key, _ANY_FLOAT), compared[1])
     return spans
 
 
-def _read_bound(condition: Any, is_negated: bool) -> tuple[str, FloatSpan] | None:
-    """What a comparison of an input with a number says of it."""
+def _narrow_span(first: FloatSpan, second: FloatSpan) -> FloatSpan:
+    return FloatSpan(max(first.low, second.low), min(first.high, second.high), first.has_nan and second.has_nan)
+
+
+def _read_comparison(condition: Any, is_negated: bool) -> tuple[Any, FloatSpan] | None:
+    """What a comparison of a term with a number says of the term."""
     kind = condition.decl().kind()
     if kind not in _FLOAT_COMPARISONS:
         return None
@@ -343,17 +367,16 @@ def _read_bound(condition: Any, is_negated: bool) -> tuple[str, FloatSpan] | Non
     is_below = kind in (z3.Z3_OP_FPA_LT, z3.Z3_OP_FPA_LE)
     if z3.is_fp_value(left):
         left, right, is_below = right, left, not is_below
-    name = _read_input(left)
-    if not name or not z3.is_fp_value(right):
+    if not z3.is_fp_value(right):
         return None
     value = read_float_value(right)
     if math.isnan(value):
         return None
     if kind == z3.Z3_OP_FPA_EQ:
-        return None if is_negated else (name, FloatSpan(value, value, False))
+        return None if is_negated else (left, FloatSpan(value, value, False))
     if is_below != is_negated:
-        return name, FloatSpan(-math.inf, value, is_negated)
-    return name, FloatSpan(value, math.inf, is_negated)
+        return left, FloatSpan(-math.inf, value, is_negated)
+    return left, FloatSpan(value, math.inf, is_negated)
 
 
 def _read_input(term: Any) -> str:

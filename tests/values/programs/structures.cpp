@@ -2,8 +2,11 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdio>
 #include <deque>
 #include <functional>
+#include <iomanip>
+#include <iostream>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -161,6 +164,33 @@ void run_joined(Publisher &pub, const Text &msg) {
   if (topic == "/robot/arm/state") pub.publish(1);
 }
 EXPLORE(joined, Text, FIELD(data))  // also: handled, ignored
+
+void run_streamed(Publisher &pub, const Numbers &msg) {
+  std::stringstream stream;
+  stream << "value " << std::setw(4) << msg.a << std::endl;
+  std::ostringstream other;
+  other << std::fixed << std::setprecision(2) << msg.x;
+  if (msg.a > 5) std::cout << stream.str() << other.str() << std::endl;
+  if (stream.str() == "value 12") pub.publish(12);
+}
+EXPLORE(streamed, Numbers, FIELD(a); FIELD(x))  // also: handled, log-only, ignored
+
+void run_printed(Publisher &pub, const Numbers &msg) {
+  std::fprintf(stderr, "%d\n", msg.a);
+  if (msg.a == 3) std::fflush(stdout);
+  else pub.publish(msg.a);
+}
+EXPLORE(printed, Numbers, FIELD(a))  // also: handled, log-only
+
+void run_extracted(Publisher &pub, const Text &msg) {
+  std::istringstream stream(msg.data);
+  int first = 0;
+  std::string word;
+  stream >> first >> word;
+  if (!stream) { LOG_WARN("no number"); return; }
+  pub.publish(first);
+}
+EXPLORE(extracted, Text, FIELD(data))  // also: handled, log-only
 
 void run_locked(Publisher &pub, const Numbers &msg) {
   static std::mutex mutex;

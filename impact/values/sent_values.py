@@ -1,0 +1,253 @@
+"""What a callback publishes: per publisher and field, the values that it can send.
+
+Least and greatest values are found by asking for something beyond those that are known, so few questions are needed
+where a value is clamped. A set of few values is listed.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import z3
+
+from .ir.ranges import Ranges, narrow_floats
+from .ir.solving import SolverTimeout, Solving
+from .ir.terms import make_float, pack_float, read_float_bits, read_signed, unpack_float
+from .outcomes import CallbackPath, CodeLine, Exploration, InputKind
+from .projection import FieldValues, Number, make_solving, merge_spans
+
+_FLOATS = (InputKind.FLOAT32, InputKind.FLOAT64)
+_FEW = 8
+_STEPS = 12
+
+
+class SentProjection(NamedTuple):
+    """A field that is sent. publisher: its name; path: of the field; places: where it is published."""
+
+    publisher: str
+    path: str
+    kind: InputKind
+    bits: int
+    is_signed: bool
+    values: FieldValues
+    places: tuple[CodeLine, ...]
+
+
+@dataclass
+class _Collected:
+    """What is known of one field while paths are looked at."""
+
+    kind: InputKind
+    bits: int
+    is_signed: bool
+    numbers: set[int] = field(default_factory=set)
+    terms: list[tuple[CallbackPath, z3.BitVecRef]] = field(default_factory=list)
+    places: dict[CodeLine, None] = field(default_factory=dict)
+
+
+def list_sent_fields(exploration: Exploration, seconds: float = 10.0) -> list[SentProjection]:
+    """Fields that are published on some path, with the values that they can have. A path that is unknown counts as far
+    as it went; bytes of texts are left out."""
+    collected: dict[tuple[str, str], _Collected] = {}
+    for path in exploration.paths:
+        for sent in path.sent:
+            for name, value in sent.values.items():
+                kind, bits, is_signed = sent.kinds[name]
+                if kind is InputKind.CHARACTER:
+                    continue
+                each = collected.setdefault((sent.publisher, name), _Collected(kind, bits, is_signed))
+                each.places[sent.place] = None
+                if isinstance(value, int):
+                    each.numbers.add(value)
+                else:
+                    each.terms.append((path, value))
+    solving = make_solving(exploration, time.monotonic() + seconds)
+    return [
+        SentProjection(
+            publisher, name, each.kind, each.bits, each.is_signed, _find_values(each, solving), tuple(each.places)
+        )
+        for (publisher, name), each in collected.items()
+    ]  # fmt: skip
+
+
+def _find_values(collected: _Collected, solving: Solving) -> FieldValues:
+    if not collected.terms:
+        return _list_values(collected, collected.numbers)
+    if collected.kind not in _FLOATS or len(collected.terms) == 1:
+        few = _list_few(collected, solving)
+        if few is not None:
+            return _list_values(collected, few)
+    return _find_hull(collected, solving)
+
+
+def _read_value(collected: _Collected, bits: int) -> Number:
+    if collected.kind in _FLOATS:
+        return unpack_float(bits, collected.bits)
+    return read_signed(bits, collected.bits) if collected.is_signed else bits
+
+
+def _list_values(collected: _Collected, bits: Iterable[int]) -> FieldValues:
+    """A set of single values."""
+    values = [_read_value(collected, each) for each in bits]
+    finite = [value for value in values if math.isfinite(value)]
+    return FieldValues(
+        merge_spans((value, value) for value in finite),
+        tuple(sorted({float(value) for value in values if math.isinf(value)})),
+        any(math.isnan(value) for value in values),
+    )
+
+
+def _list_few(collected: _Collected, solving: Solving) -> set[int] | None:
+    """All values, where they are few and the solver names them."""
+    found = set(collected.numbers)
+    for path, term in collected.terms:
+        conditions = solving.select_related(path.condition, solving.find_traits(term).names)
+        own: list[z3.BoolRef] = []
+        while True:
+            try:
+                model = solving.find_model([*conditions, *own], path.example) if (conditions or own) else path.example
+            except SolverTimeout:
+                return None
+            if model is None:
+                break
+            value = solving.evaluate(term, {**path.example, **model})
+            if not isinstance(value, int) or len(found) >= _FEW:
+                return None
+            found.add(value)
+            own.append(term != z3.BitVecVal(value, collected.bits))  # pyright: ignore[reportArgumentType]
+    return found
+
+
+def _find_hull(collected: _Collected, solving: Solving) -> FieldValues:
+    """Least and greatest value; what the solver does not exclude is taken to be possible."""
+    numbers = _list_values(collected, collected.numbers)
+    spans = list(numbers.spans)
+    infinities, has_nan, is_complete = set(numbers.infinities), numbers.has_nan, True
+    for path, term in collected.terms:
+        hull = _Hull(collected, solving, path, term)
+        spans.extend(hull.find_span())
+        if collected.kind in _FLOATS:
+            infinities.update(each for each in (-math.inf, math.inf) if hull.allows_special(each))
+            has_nan |= hull.allows_special(math.nan)
+        is_complete &= hull.is_complete
+    merged = merge_spans(spans)
+    if len(merged) > 1 and collected.terms:
+        merged = ((merged[0][0], merged[-1][1]),)
+    return FieldValues(merged, tuple(sorted(infinities)), has_nan, is_relational=True, is_complete=is_complete)
+
+
+class _Hull:
+    """The values of one term under the conditions of one path."""
+
+    def __init__(self, collected: _Collected, solving: Solving, path: CallbackPath, term: z3.BitVecRef):
+        self.collected = collected
+        self.solving = solving
+        self.example = path.example
+        self.bits = term
+        self.is_float = collected.kind in _FLOATS
+        self.is_complete = True
+        self.term: Any = read_float_bits(term, collected.bits) if self.is_float else term
+        self.conditions = solving.select_related(path.condition, solving.find_traits(term).names)
+
+    def _ask(self, condition: Any) -> dict[str, int] | bool | None:
+        """A model where a condition holds, None where it cannot, True where that is not known."""
+        if self._is_excluded(condition):
+            return None
+        try:
+            return self.solving.find_model([*self.conditions, condition], self.example)
+        except SolverTimeout:
+            return True
+
+    def allows_special(self, value: float) -> bool:
+        same = z3.fpIsNaN(self.term) if math.isnan(value) else self.term == make_float(value, self.collected.bits)
+        return self._ask(same) is not None
+
+    def _compare(self, predicate: str, value: Number) -> Any:
+        if self.is_float:
+            compare = z3.fpLT if predicate == "lt" else z3.fpGT
+            infinite = z3.fpIsInf(self.term)
+            return z3.And(compare(self.term, make_float(float(value), self.collected.bits)), z3.Not(infinite))
+        if self.collected.is_signed:
+            return self.term < value if predicate == "lt" else self.term > value
+        return z3.ULT(self.term, value) if predicate == "lt" else z3.UGT(self.term, value)
+
+    def find_span(self) -> Sequence[tuple[Number, Number]]:
+        """One span, or none where there is no finite value."""
+        start = self.solving.evaluate(self.bits, self.example)
+        value = _read_value(self.collected, start) if isinstance(start, int) else math.nan
+        if not math.isfinite(value):
+            found = self._ask(z3.Not(z3.Or(z3.fpIsNaN(self.term), z3.fpIsInf(self.term)))) if self.is_float else None
+            if not isinstance(found, dict):
+                self.is_complete &= found is not True
+                return ()
+            start = self.solving.evaluate(self.bits, {**self.example, **found})
+            value = _read_value(self.collected, start) if isinstance(start, int) else math.nan
+            if not math.isfinite(value):
+                return ()
+        low, high = self._extend(value, "lt"), self._extend(value, "gt")
+        return ((low, high),)
+
+    def _extend(self, value: Number, predicate: str) -> Number:
+        """The farthest value in one direction: what is farther is asked for until there is nothing."""
+        limit = self._get_limit(predicate)
+        for step in range(_STEPS):
+            if step == 1 and self._ask(self._compare(predicate, _divide_limit(limit, self.is_float))) is not None:
+                return limit
+            found = self._ask(self._compare(predicate, value))
+            if found is None:
+                return value
+            if not isinstance(found, dict):
+                break
+            bits = self.solving.evaluate(self.bits, {**self.example, **found})
+            following = _read_value(self.collected, bits) if isinstance(bits, int) else math.nan
+            if not math.isfinite(following) or following == value:
+                break
+            value = following
+        return self._search_end(value, limit, predicate)
+
+    def _get_limit(self, predicate: str) -> Number:
+        bits = self.collected.bits
+        if self.is_float:
+            largest = 1.7976931348623157e308 if bits == 64 else 3.4028234663852886e38
+            return -largest if predicate == "lt" else largest
+        if self.collected.is_signed:
+            return -(1 << (bits - 1)) if predicate == "lt" else (1 << (bits - 1)) - 1
+        return 0 if predicate == "lt" else (1 << bits) - 1
+
+    def _search_end(self, value: Number, limit: Number, predicate: str) -> Number:
+        """Between a value that is there and one that need not be: what bounds do not exclude is kept."""
+        inside, outside = self._make_key(value), self._make_key(limit)
+        while abs(outside - inside) > 1:
+            middle = (inside + outside) // 2
+            if self._is_excluded(self._compare(predicate, self._read_key(middle))):
+                outside = middle
+            else:
+                inside = middle
+        return self._read_key(outside)
+
+    def _make_key(self, value: Number) -> int:
+        """Whole numbers in the order of values, so that floats are halved by their bits."""
+        if not self.is_float:
+            return int(value)
+        bits = pack_float(float(value), self.collected.bits)
+        half = 1 << (self.collected.bits - 1)
+        return half - bits if bits & half else bits
+
+    def _read_key(self, key: int) -> Number:
+        if not self.is_float:
+            return key
+        half = 1 << (self.collected.bits - 1)
+        return unpack_float(half - key if key < 0 else key, self.collected.bits)
+
+    def _is_excluded(self, condition: Any) -> bool:
+        condition = z3.simplify(condition)
+        ranges = Ranges(self.solving.inputs, narrow_floats(self.conditions))
+        return z3.is_false(condition) or ranges.is_impossible(condition)  # pyright: ignore[reportArgumentType]
+
+
+def _divide_limit(limit: Number, is_float: bool) -> Number:
+    return limit / 2 if is_float else int(limit) // 2
