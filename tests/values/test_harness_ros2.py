@@ -1,5 +1,5 @@
-"""Callbacks of rclcpp: lambdas, binds, members, services, timers, transforms, own messages, several sources, and headers
-that are not on the machine."""
+"""Callbacks of rclcpp: lambdas, binds, members, services, timers, transforms, own messages, several sources, and
+headers that are not on the machine."""
 
 import pytest
 from harness_workspaces import Prepared, double, needs_compiler, text, write_workspace

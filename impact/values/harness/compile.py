@@ -131,6 +131,10 @@ class Workshop:
             self._write(write_headers(self.definitions, key))
             if (self.include / header).exists():
                 return
+        configuration = self.definitions.write_configuration(header)
+        if configuration:
+            self._write({header: configuration})
+            return
         facade = find_facade(header, self.definitions.ros, unit.boost)
         if facade:
             self._write({header: f"#pragma once\n#include <{facade}>\n"})

@@ -138,8 +138,8 @@ class HarnessWriter:
         if bases & set(_NODES) or "enable_shared_from_this" in bases:
             arguments = ", ".join(self._spell_argument(each) for each in types)
             lines += [
-                f"  static auto made = std::shared_ptr<{own}>(new {own}({arguments}));",
-                "  return made.get();",
+                f"  auto *made = new std::shared_ptr<{own}>(new {own}({arguments}));",
+                "  return made->get();",
                 "}",
             ]
         else:

@@ -13,7 +13,7 @@ from pathlib import Path
 from ....edges.groups import group_pairs
 from ...model.flow.graph import Graph
 from ...model.workspace import Workspace
-from ..outcomes import Bounds, Witness
+from ..outcomes import NOWHERE, Bounds, Reaction, Witness
 from .callbacks import ClassReader, CppCallback, list_cpp_callbacks
 from .compile import CannotCompile, HarnessFiles, SourceUnit, Workshop
 from .generate import Harness, HarnessEntry, HarnessWriter
@@ -68,6 +68,15 @@ class PreparedCallback:
             raise CannotCompile(self.reason or "there is no harness")
         program = self.workshop.build_replay(self.units)
         return replay(program, entry or self.entry, [one.values for one in witnesses], self.workshop.root, seconds)
+
+    def choose_entry(self) -> str:
+        """The first entry by which the callback is reached natively, with every input zero; the first of all where it
+        is reached by none. Raises CannotCompile."""
+        nothing = Witness({}, Reaction.UNKNOWN, None, NOWHERE)
+        for name in (self.entry, *(one.name for one in self.others)):
+            if self.replay([nothing], name)[0].begun:
+                return name
+        return self.entry
 
     def emit_klee(self, folder: Path, entry: str = "") -> HarnessFiles:
         """Writes the harness for KLEE into a folder. Raises CannotCompile."""
