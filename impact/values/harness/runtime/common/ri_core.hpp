@@ -1,20 +1,29 @@
 // What facades, messages and harnesses share: inputs and sent values by type, callbacks that were given to the
 // framework, and what stands for anything that is not known.
 #pragma once
+#include <unistd.h>
+
+#include <algorithm>
 #include <array>
 #include <cassert>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <deque>
+#include <fstream>
 #include <functional>
+#include <iomanip>
+#include <iostream>
+#include <limits>
 #include <list>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <new>
+#include <numeric>
 #include <optional>
 #include <ostream>
 #include <set>
