@@ -56,6 +56,15 @@ def test_members_are_of_what_is_stood_for():
     assert not table.learn(parse_errors("/ws/a.cpp:3:10: error: no member named 'start' in 'own::Class'"))
 
 
+def test_base_of_a_class_of_the_code():
+    line = "class Own : public vendor::Base {"
+    table = StubTable(lambda path, number: line, list_bases=lambda name: ["vendor::Base"] if name == "ns::Own" else [])
+    assert table.learn(parse_errors("/ws/a.cpp:1:28: error: expected class name"))
+    assert "namespace vendor { struct Base : ri::Anything" in table.render()
+    assert table.learn(parse_errors("/ws/a.cpp:9:1: error: no member named 'enable' in 'ns::Own'"))
+    assert "ri::Anything enable;" in table.render()
+
+
 def test_macros_come_first():
     table, _ = learn(
         (4, 32, "variable has incomplete type 'class VENDOR_EXPORT'"), (9, 1, "use of undeclared identifier 'member_'")

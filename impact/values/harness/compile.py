@@ -83,7 +83,7 @@ class HarnessFiles(NamedTuple):
 
 class Workshop:
     """Compiles units of one workspace in a folder of its own. root: of the workspace; packages: folders of its
-    packages, relative to it; is_own: whether its code declares a name in a scope."""
+    packages, relative to it; is_own, list_bases: of its code, as StubTable has them."""
 
     def __init__(
         self,
@@ -93,11 +93,12 @@ class Workshop:
         packages: Iterable[str],
         bounds: Bounds,
         is_own: Callable[[str, str], bool] = lambda scope, name: False,
+        list_bases: Callable[[str], Sequence[str]] = lambda name: (),
     ):
         self.root, self.folder, self.definitions, self.bounds = root.resolve(), folder, definitions, bounds
         self.include = folder / "include"
         self.include.mkdir(parents=True, exist_ok=True)
-        self._is_own = is_own
+        self._is_own, self._list_bases = is_own, list_bases
         self._folders: dict[str, None] = {}
         self._system: dict[str, None] = {}
         for package in packages:

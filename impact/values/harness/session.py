@@ -99,7 +99,7 @@ class HarnessSession:
         self.definitions = KnownInterfaces(workspace)
         self.workspace, self.graph = workspace, graph
         packages = [package.path for package in workspace]
-        self.workshop = Workshop(root, folder, self.definitions, packages, self.bounds, self._is_own)
+        self.workshop = Workshop(root, folder, self.definitions, packages, self.bounds, self._is_own, self._list_bases)
         self._further: dict[str, tuple[SourceUnit, str] | str] = {}
 
     def _is_own(self, scope: str, name: str) -> bool:
@@ -108,6 +108,10 @@ class HarnessSession:
             return name in code.classes or name in code.by_tail
         found = (*code.classes.get(name, ()), *code.by_tail.get(name, ()))
         return any(_ends_like(each.name, f"{scope}::{name}", "::") for each in found)
+
+    def _list_bases(self, name: str) -> list[str]:
+        found = self.reader.code.classes.get(name.rpartition("::")[2], ())
+        return [base for one in found if _ends_like(name, one.name, "::") for base in self.reader.list_bases(one)]
 
     def __enter__(self) -> HarnessSession:
         return self

@@ -36,12 +36,16 @@ def parse_errors(output: str) -> list[CompileError]:
 
 class StubTable:
     """What is declared so far. read_line: a line of a file, counted from 1, empty where there is none. is_own: whether
-    the code itself declares a name in a scope, so that it is not for us to declare."""
+    the code itself declares a name in a scope, so that it is not for us to declare. list_bases: the bases of a class
+    of the code, as written."""
 
     def __init__(
-        self, read_line: Callable[[str, int], str], is_own: Callable[[str, str], bool] = lambda scope, name: False
+        self,
+        read_line: Callable[[str, int], str],
+        is_own: Callable[[str, str], bool] = lambda scope, name: False,
+        list_bases: Callable[[str], Sequence[str]] = lambda name: (),
     ):
-        self._read_line, self._is_own = read_line, is_own
+        self._read_line, self._is_own, self._list_bases = read_line, is_own, list_bases
         # Scope and name to what it is: `namespace`, `type`, `template`, `function`, `variable`, `constant`.
         self._names: dict[tuple[str, str], str] = {}
         # Class to its members and what these are: `member`, `function`, `type`.
@@ -50,6 +54,16 @@ class StubTable:
 
     def __bool__(self) -> bool:
         return bool(self._names or self._members)
+
+    def _is_type(self, full: str) -> bool:
+        scope, _, last = full.rpartition("::")
+        return self._names.get((scope, last)) in ("type", "template")
+
+    def _find_type(self, written: str) -> str:
+        """What is stood for under a name as it is written somewhere, empty for nothing."""
+        written = _strip_arguments(written).removeprefix("::")
+        full = (f"{scope}::{name}".lstrip(":") for scope, name in self._names)
+        return next((one for one in full if self._is_type(one) and f"::{one}".endswith(f"::{written}")), "")
 
     @property
     def has_hooks(self) -> bool:
@@ -83,6 +97,8 @@ class StubTable:
             return not known
         if "expected namespace name" in text or "is not a namespace name" in text:
             return self._learn_namespace(error)
+        if text.startswith("expected class name"):
+            return self._learn_base(error)
         if not quoted:
             return False
         name = quoted[0]
@@ -100,8 +116,6 @@ class StubTable:
             return self._add_name("", name, "template" if self._peek(error, name).startswith("<") else "type")
         if text.startswith(("use of undeclared identifier", "unknown class name", "undeclared")):
             return self._add_name("", name, self._guess(error))
-        if text.startswith("expected class name"):
-            return self._learn_base(error)
         if "unexpected namespace name" in text or "unexpected type name" in text:
             return self._add_name("", name, "type")
         if "template template" in text or "template argument for template type parameter must be a type" in text:
@@ -190,11 +204,12 @@ class StubTable:
 
     def _add_member(self, owner: str, name: str, kind: str) -> bool:
         owner = _strip_arguments(owner).replace("const ", "").strip(" &*").removeprefix("::")
-        scope, _, last = owner.rpartition("::")
         if not _NAME.fullmatch(name):
             return False
-        if owner not in _HOOKS and self._names.get((scope, last)) not in ("type", "template"):
-            return False
+        if owner not in _HOOKS and not self._is_type(owner):
+            owner = next((one for base in self._list_bases(owner) if (one := self._find_type(base))), "")
+            if not owner:
+                return False
         members = self._members.setdefault(owner, {})
         kind = {"template": "function", "function": "function", "type": "type"}.get(kind, "member")
         if name in members and (members[name] == kind or kind == "member"):

@@ -65,6 +65,8 @@ struct Stream {
 
 struct Anything;
 template <class T> T &make_something();
+template <class T> struct is_initializer_list : std::false_type {};
+template <class T> struct is_initializer_list<std::initializer_list<T>> : std::true_type {};
 
 struct Anything {
   const char *name = "something of a header that is not here";
@@ -87,7 +89,10 @@ struct Anything {
   Anything operator-() const { unknown(name); return *this; }
   Anything *begin() const { unknown(name); return const_cast<Anything *>(this); }
   Anything *end() const { return const_cast<Anything *>(this); }
-  template <class T, class = std::enable_if_t<!std::is_base_of<Anything, T>::value && !std::is_reference<T>::value>>
+  // Not to what would make an assignment to a text ambiguous.
+  template <class T, class = std::enable_if_t<!std::is_base_of<Anything, T>::value && !std::is_reference<T>::value &&
+                                              !std::is_same<T, char>::value && !std::is_same<T, const char *>::value &&
+                                              !is_initializer_list<T>::value>>
   operator T() const { unknown(name); return make_something<std::remove_cv_t<T>>(); }
 #ifdef RI_EXTRA_ri_Anything
   RI_EXTRA_ri_Anything
