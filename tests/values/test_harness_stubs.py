@@ -56,6 +56,20 @@ def test_members_are_of_what_is_stood_for():
     assert not table.learn(parse_errors("/ws/a.cpp:3:10: error: no member named 'start' in 'own::Class'"))
 
 
+@pytest.mark.parametrize(
+    "line, flag",
+    [
+        ("  VENDOR_ALIGNED_NEW", "-DVENDOR_ALIGNED_NEW="),
+        ("VENDOR_ALIGNED_NEW(Own, 3);", "-DVENDOR_ALIGNED_NEW(...)="),
+        ("VENDOR_ALIGNED_NEW own;", None),
+    ],
+)
+def test_macro_on_a_line_of_its_own(line, flag):
+    table = StubTable(lambda path, number: line)
+    assert table.learn(parse_errors("/ws/a.cpp:1:3: error: unknown type name 'VENDOR_ALIGNED_NEW'"))
+    assert table.flags == ({flag} if flag else set())
+
+
 def test_base_of_a_class_of_the_code():
     line = "class Own : public vendor::Base {"
     table = StubTable(lambda path, number: line, list_bases=lambda name: ["vendor::Base"] if name == "ns::Own" else [])

@@ -248,7 +248,7 @@ class Workshop:
         folder = self.folder / unit.name
         folder.mkdir(parents=True, exist_ok=True)
         path = folder / "harness.cpp"
-        unit.stubs = StubTable(self._read_line, self._is_own)
+        unit.stubs = StubTable(self._read_line, self._is_own, self._list_bases)
         self._store(unit, path)
         self._find_headers(unit, clang, path)
         first: CompileError | None = None

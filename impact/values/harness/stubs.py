@@ -112,6 +112,10 @@ class StubTable:
             if "in namespace" in text or "in the global namespace" in text:
                 return self._add_name(quoted[1], name, self._guess(error))
             return self._add_member(quoted[1], name, self._guess(error))
+        if text.startswith("unknown type name") and (macro := self._find_macro(error, name)):
+            known = macro in self.flags
+            self.flags.add(macro)
+            return not known
         if text.startswith("unknown type name"):
             return self._add_name("", name, "template" if self._peek(error, name).startswith("<") else "type")
         if text.startswith(("use of undeclared identifier", "unknown class name", "undeclared")):
@@ -121,6 +125,14 @@ class StubTable:
         if "template template" in text or "template argument for template type parameter must be a type" in text:
             return False
         return False
+
+    def _find_macro(self, error: CompileError, name: str) -> str:
+        """The flag that makes a macro nothing, where a word in capitals is a line of its own; empty for no macro."""
+        line = self._read_line(error.path, error.line).strip().rstrip(";")
+        if not re.fullmatch(r"[A-Z][A-Z0-9]*_[A-Z0-9_]+", name) or not line.startswith(name):
+            return ""
+        rest = line[len(name) :].strip()
+        return f"-D{name}=" if not rest else f"-D{name}(...)=" if rest.startswith("(") and rest.endswith(")") else ""
 
     def _learn_namespace(self, error: CompileError) -> bool:
         line = self._read_line(error.path, error.line)
