@@ -32,7 +32,7 @@ from .toolchain import (
 )
 
 _ROUNDS_OF_HEADERS = 8
-_ROUNDS_OF_STUBS = 12
+_ROUNDS_OF_STUBS = 20
 _HEADER_BYTES = 4_000_000
 _SYSTEM = ("/usr/include", "/usr/local/include")
 _HEADERS = (".h", ".hpp", ".hh", ".hxx", ".ipp", ".inl", ".tpp")
