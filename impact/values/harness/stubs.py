@@ -276,7 +276,7 @@ class StubTable:
             elif owner == "ri::Anything":
                 rows.append(f"static Anything {name};")
             else:
-                rows.append(f"ri::Anything {name};")
+                rows.append(f"static inline ri::Anything {name};")
         return rows
 
     def _define_members(self) -> list[str]:
