@@ -79,6 +79,24 @@ def test_base_of_a_class_of_the_code():
     assert "ri::Anything enable;" in table.render()
 
 
+def test_what_is_switched_on_is_a_number():
+    lines = {
+        1: "void f(const vendor::Event &event) {",
+        2: "  switch (event.state) {",
+        3: "    case vendor::Event::Down: break;",
+    }
+    table = StubTable(lambda path, number: lines.get(number, ""))
+    for line, column, text in (
+        (1, 22, "no type named 'Event' in namespace 'vendor'"),
+        (2, 17, "no member named 'state' in 'vendor::Event'"),
+        (3, 25, "no member named 'Down' in 'vendor::Event'"),
+        (2, 3, "statement requires expression of integer type ('ri::Anything' invalid)"),
+    ):
+        assert table.learn(parse_errors(f"/ws/a.cpp:{line}:{column}: error: {text}"))
+    assert "static inline ri::Number state;" in table.render()
+    assert "static constexpr int Down = " in table.render()
+
+
 def test_macros_come_first():
     table, _ = learn(
         (4, 32, "variable has incomplete type 'class VENDOR_EXPORT'"), (9, 1, "use of undeclared identifier 'member_'")

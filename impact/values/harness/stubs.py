@@ -48,7 +48,7 @@ class StubTable:
         self._read_line, self._is_own, self._list_bases = read_line, is_own, list_bases
         # Scope and name to what it is: `namespace`, `type`, `template`, `function`, `variable`, `constant`.
         self._names: dict[tuple[str, str], str] = {}
-        # Class to its members and what these are: `member`, `function`, `type`.
+        # Class to its members and what these are: `member`, `function`, `type`, `constant`, `number`.
         self._members: dict[str, dict[str, str]] = {}
         self.flags: set[str] = set()
 
@@ -99,6 +99,8 @@ class StubTable:
             return self._learn_namespace(error)
         if text.startswith("expected class name"):
             return self._learn_base(error)
+        if text.startswith("statement requires expression of integer type") and "ri::Anything" in text:
+            return self._learn_number(error)
         if not quoted:
             return False
         name = quoted[0]
@@ -125,6 +127,16 @@ class StubTable:
         if "template template" in text or "template argument for template type parameter must be a type" in text:
             return False
         return False
+
+    def _learn_number(self, error: CompileError) -> bool:
+        """What a `switch` asks for is a number."""
+        found = re.search(r"switch\s*\(.*?(\w+)\s*\)", self._read_line(error.path, error.line))
+        if found is None:
+            return False
+        owners = [each for each, rows in self._members.items() if rows.get(found[1]) == "member"]
+        for owner in owners:
+            self._members[owner][found[1]] = "number"
+        return bool(owners)
 
     def _find_macro(self, error: CompileError, name: str) -> str:
         """The flag that makes a macro nothing, where a word in capitals is a line of its own; empty for no macro."""
@@ -223,8 +235,8 @@ class StubTable:
             if not owner:
                 return False
         members = self._members.setdefault(owner, {})
-        kind = {"template": "function", "function": "function", "type": "type"}.get(kind, "member")
-        if name in members and (members[name] == kind or kind == "member"):
+        kind = {"template": "function", "variable": "member", "namespace": "type"}.get(kind, kind)
+        if name in members and (members[name] in (kind, "number") or kind == "member"):
             return False
         members[name] = kind
         return True
@@ -273,6 +285,10 @@ class StubTable:
             elif kind == "function":
                 body = f'{{ ri::unknown("{owner}::{name}"); return {{}}; }}'
                 rows.append(f"template <class... RiM, class... RiB> static ri::Anything {name}(RiB &&...) {body}")
+            elif kind == "constant":
+                rows.append(f"static constexpr int {name} = {_make_number(owner + name)};")
+            elif kind == "number":
+                rows.append(f"static inline ri::Number {name};")
             elif owner == "ri::Anything":
                 rows.append(f"static Anything {name};")
             else:

@@ -65,6 +65,11 @@ struct Stream {
 
 struct Anything;
 template <class T> T &make_something();
+// A number that nothing is known of.
+struct Number {
+  operator int() const { unknown("a number of a header that is not here"); return 0; }
+  template <class A> Number &operator=(const A &) { unknown("a number of a header that is not here"); return *this; }
+};
 template <class T> struct is_initializer_list : std::false_type {};
 template <class T> struct is_initializer_list<std::initializer_list<T>> : std::true_type {};
 
@@ -504,8 +509,12 @@ template <class T> bool find_parameter(const char *name, T &value) {
 template <class T> struct PointedTo { using type = void; };
 template <class T> struct PointedTo<std::shared_ptr<T>> { using type = T; };
 
+template <class T> inline constexpr bool can_give =
+    std::is_pointer<T>::value || std::is_default_constructible<T>::value || std::is_constructible<T, std::string>::value ||
+    !std::is_void<typename PointedTo<T>::type>::value;
+
 // An argument of a constructor or of a function that subscribes.
-template <class T> T &give_argument() {
+template <class T, class = std::enable_if_t<can_give<T>>> T &give_argument() {
   if constexpr (std::is_pointer<T>::value) {
     using Inner = std::remove_cv_t<std::remove_pointer_t<T>>;
     static T made = nullptr;
@@ -522,8 +531,7 @@ template <class T> T &give_argument() {
     else { static T made; return made; }
   }
   else if constexpr (std::is_default_constructible<T>::value) { static T made{}; return made; }
-  else if constexpr (std::is_constructible<T, std::string>::value) { static T made{std::string("node")}; return made; }
-  else { static_assert(std::is_default_constructible<T>::value, "an argument of this type is not made"); }
+  else { static T made{std::string("node")}; return made; }
 }
 
 template <class B, class N, class... A> void make_base(N *node, A &&...a) {
