@@ -32,7 +32,8 @@ SETS = Path(__file__).parent / "callbacks"
 def list_callbacks(clone: mining.Clone, commit: str) -> Iterator[tuple[dict, SubscriberFields]]:
     """The subscribers of a commit that have a callback, with what the tool says of each; one for each place."""
     seen = set()
-    for topic in collect_fields(clone.folder, rev=commit).report.topics:
+    report = collect_fields(clone.folder, rev=commit).report
+    for topic in (*report.topics, *report.unnamed):
         for one in topic.subscribers:
             if one.callback and topic.fields and (one.path, one.line, topic.type) not in seen:
                 seen.add((one.path, one.line, topic.type))

@@ -25,8 +25,10 @@ import yaml
 import zstandard
 
 from ..edges.files import write_file
+from ..impact.targets.distro.conda import SID
 from ..impact.targets.platform import normalize_library_name
 from ..impact.targets.tables import DATA
+from ..impact.targets.unpacked import read_table
 from ..impact.targets.version import is_at_least
 from .git import BuildError, open_repository, read_file_versions, read_first_parents
 from .surface.releases import find_git_directory
@@ -180,17 +182,25 @@ def build(clones: Path) -> dict[str, dict[str, dict[str, str]]]:
     return table
 
 
-def main(arguments: list[str] | None = None) -> None:
-    (folder,) = sys.argv[1:] if arguments is None else arguments
-    table = build(Path(folder))
+def write_channels(file: Path, channels: dict[str, dict[str, dict[str, str]]]) -> None:
+    """The table, a library a line."""
     lines = (
         f"{json.dumps(channel)}: {{\n"
         + ",\n".join(f"  {json.dumps(name)}: {json.dumps(rows)}" for name, rows in libraries.items())
         + "\n}"
-        for channel, libraries in table.items()
+        for channel, libraries in channels.items()
     )
     text = "{\n" + ",\n".join(lines) + "\n}\n"
-    write_file(DATA / "conda.json.zst", zstandard.ZstdCompressor(level=19).compress(text.encode()))
+    write_file(file, zstandard.ZstdCompressor(level=19).compress(text.encode()))
+
+
+def main(arguments: list[str] | None = None) -> None:
+    (folder,) = sys.argv[1:] if arguments is None else arguments
+    table, file = build(Path(folder)), DATA / "conda.json.zst"
+    if file.exists():  # what sid.py adds stays
+        before = read_table(file, dict[str, dict[str, dict[str, str]]])
+        table.update({channel: rows for channel, rows in before.items() if channel == SID})
+    write_channels(file, table)
     print(f"{len(table)} channels, {sum(map(len, table.values()))} libraries")
 
 

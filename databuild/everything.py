@@ -190,6 +190,9 @@ STEPS = (
     BuildStep("gz-systems", ("gz_systems.json.zst",), (), _read_clones("databuild.gz_systems")),
     BuildStep("tree-nodes", ("tree_nodes.json.zst",), ("manifests",), _read_clones("databuild.tree_nodes")),
     BuildStep("conda", ("conda.json.zst",), (), _read_clones("databuild.conda")),
+    BuildStep("sid", (), ("conda",),
+         lambda sources, data, own: _call("databuild.sid", own, sources.apt["sid"], "--output", data)
+         if "sid" in sources.apt else None),
     BuildStep("libraries",
          ("libraries.sqlite", "changes_debian.json.zst", "uses_debian.json", "changes_library_tags.json.zst"),
          ("surfaces", "providers"), _build_libraries),

@@ -4,8 +4,9 @@
 
 Of each library the versions that some platform has are read, an older one and the newest; where one lost names that the
 one before has, the first releases of the minor versions between them are read too, until the one is found that lost
-them. Wheels are downloaded with pip, read as archives and deleted; nothing is installed or run. WORK keeps what was
-read of each.
+them. Of names that a module lost before all wheels, such as those of PyQt4's QtGui, the newest wheel says where they
+are. Wheels are downloaded with pip, read as archives and deleted; nothing is installed or run. WORK keeps what was read
+of each.
 
 A name is in a version when a module, or its stub, binds it. It is gone from a version on when from then on no version
 has it and each surely lacks it: its module can be read in full and does not bind it, its module's `__getattr__` lists
@@ -56,6 +57,24 @@ PROJECTS = {name: name for name in (
 )}  # fmt: skip
 """Platform libraries, by their names in platform_versions.yaml, with what PyPI calls them: those behind rosdep's keys
 `python3-*` that released packages name, and that PyPI has under the versions of the platforms."""
+
+
+class MovedNames(NamedTuple):
+    """Names that a library took out of a module with a version that came before all wheels. project: as PyPI calls it.
+    module: what had them. homes: the modules that have them since. removed_in: that version. source: who says so."""
+
+    project: str
+    module: str
+    homes: tuple[str, ...]
+    removed_in: str
+    source: str
+
+
+MOVED = {
+    "pyqt5": MovedNames("PyQt5", "PyQt5.QtGui", ("PyQt5.QtWidgets", "PyQt5.QtPrintSupport"), "5.0",
+                        "wheels of PyQt5; Differences Between PyQt4 and PyQt5"),
+}  # fmt: skip
+"""By their names in platform_versions.yaml."""
 _PYTHONS = ("3.12", "3.10", "3.8", "3.6", "3.14", "2.7")
 _MACHINES = ("manylinux_2_28_x86_64", "manylinux_2_17_x86_64", "manylinux2014_x86_64", "manylinux2010_x86_64",
              "manylinux1_x86_64")  # fmt: skip
@@ -337,8 +356,8 @@ def _iterate_losses(before: OfferedNames, after: OfferedNames) -> Iterator[str]:
 
 
 class Loss(NamedTuple):
-    """What became of a name. last_in: the last version that may have it. removed_in: the first one that has not, empty
-    while all have it. deprecated_in: the first one from which on it warns."""
+    """What became of a name. last_in: the last version that surely has it. removed_in: the first one that surely has
+    not, empty while all have it. deprecated_in: the first one from which on it warns."""
 
     name: str
     last_in: str
@@ -354,15 +373,14 @@ def find_losses(versions: Sequence[OfferedNames]) -> list[Loss]:
         has = max((place for place, entry in enumerate(entries) if entry is not None), default=None)
         if has is None:
             continue
-        gone = len(versions)
-        while gone > has + 1 and versions[gone - 1].lacks(name, versions[has]):
-            gone -= 1
+        gone = _find_loss(versions, name, has)
         warned = [bool(e.bound is not None and e.bound.deprecated) if e is not None else None for e in entries]
         since = next((n for n in range(has + 1) if all(warned[n:gone])), None)
         removed = versions[gone].release.version if gone < len(versions) else ""
         if removed or since is not None:
             deprecated = versions[since].release.version if since is not None else ""
-            found[name] = Loss(name, versions[gone - 1].release.version, removed, deprecated)
+            last = has if removed else len(versions) - 1
+            found[name] = Loss(name, versions[last].release.version, removed, deprecated)
 
     shares = Counter(loss.name.rpartition(".")[0] for loss in found.values() if not loss.removed_in)
 
@@ -377,6 +395,20 @@ def find_losses(versions: Sequence[OfferedNames]) -> list[Loss]:
     return [loss for loss in found.values() if not is_told(loss)]
 
 
+def _find_loss(versions: Sequence[OfferedNames], name: str, has: int) -> int:
+    """The place of the first version that surely lacks a name, where the newest does; as many as there are for none.
+    Two in a row count though it cannot be known of later ones, whose module has a `__getattr__`. has: the place of the
+    last version that has the name."""
+    lacking = [version.lacks(name, versions[has]) for version in versions[has + 1 :]]
+    if not lacking or not lacking[-1]:
+        return len(versions)
+    twice = next((place for place, both in enumerate(pairwise(lacking)) if all(both)), len(lacking))
+    last = len(lacking) - 1
+    while last and lacking[last - 1]:
+        last -= 1
+    return has + 1 + min(twice, last)
+
+
 def group_losses(library: str, project: str, losses: Iterable[Loss]) -> list[dict[str, Any]]:
     """Losses as rows of a table of changes, by their versions."""
     groups: dict[tuple[str, str, str], dict[str, str]] = {}
@@ -389,6 +421,32 @@ def group_losses(library: str, project: str, losses: Iterable[Loss]) -> list[dic
         bounds = {"last_in": last, "removed_in": removed, "deprecated_in": deprecated}
         made.append({**group, **{key: value for key, value in bounds.items() if value}, "names": names})
     return made
+
+
+def group_moved(library: str, moved: MovedNames, release: OfferedNames) -> dict[str, Any]:
+    """Classes that a version has in other modules than its older sister had, and not in that one any more, as a row of
+    a table of changes."""
+    names = {}
+    for name in sorted(release.public):
+        home, _, last = name.rpartition(".")
+        old = f"{moved.module}.{last}"
+        if home in moved.homes and last[:1].isupper() and not last.isupper() and old not in release.public:
+            names[old] = name
+    return {"kind": "python-removed", "package": library, "library": True, "source": moved.source,
+            "removed_in": moved.removed_in, "names": names}  # fmt: skip
+
+
+def build_moved(wanted: Mapping[str, MovedNames], index: PyPIIndex, report: Callable[[str], None]) -> list[Any]:
+    """The rows of what modules no longer have, each by the newest version that a platform has."""
+    groups = []
+    for library, moved in sorted(wanted.items()):
+        available = {parse(version): version for version in index.list_versions(moved.project)}
+        keys = sorted(available.keys() & set(map(parse, list_platform_versions(library))))
+        release = index.read(moved.project, available[keys[-1]]) if keys else None
+        if release is not None:
+            groups.append(group_moved(library, moved, OfferedNames(release)))
+            report(f"{library}: {release.version} read; {len(groups[-1]['names'])} names that moved")
+    return groups
 
 
 def build_groups(projects: Mapping[str, str], index: PyPIIndex, report: Callable[[str], None]) -> list[dict[str, Any]]:
@@ -414,10 +472,12 @@ def main(arguments: list[str] | None = None) -> None:
     given.work.mkdir(parents=True, exist_ok=True)
     index, file = PyPIIndex(given.work), given.output / FILE
     projects = {name: project for name, project in PROJECTS.items() if not given.only or name in given.only}
-    kept = []
+    moved = {name: one for name, one in MOVED.items() if not given.only or name in given.only}
+    kept, anew = [], {*projects, *moved}
     if given.only and file.exists():
-        kept = [one for one in read_table(file, dict[str, Any])["changes"] if one["package"] not in projects]
+        kept = [one for one in read_table(file, dict[str, Any])["changes"] if one["package"] not in anew]
     made = build_groups(projects, index, lambda text: print(text, flush=True))
+    made += build_moved(moved, index, lambda text: print(text, flush=True))
     groups = sorted([*kept, *made], key=lambda group: group["package"])
     data = zstandard.ZstdCompressor(level=19).compress(json.dumps({"changes": groups}, separators=(",", ":")).encode())
     write_file(file, data)

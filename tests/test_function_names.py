@@ -10,7 +10,8 @@ VERBS = frozenset((Path(__file__).parent / "verbs.txt").read_text(encoding="utf-
 # Searches are called as the facts that they make, and what libraries call has the name that they call.
 _NAMED_OTHERWISE = (
     "main", "called_cpp", "declared_cpp", "mentioned_cpp", "searched_cpp", "searched_text", "used_cpp",
-    "getresponse", "getheaders", "frombuf",
+    "getresponse", "getheaders", "frombuf", "to_sec", "to_nsec", "to_msg", "now", "unregister", "create_module",
+    "exec_module",
 )  # fmt: skip
 
 _NOUN = re.compile(r"_*(?!is_|list_|use_)[^_]+_of(?:_|\Z)")

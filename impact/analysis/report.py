@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from itertools import product
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -206,12 +206,22 @@ def format_severities(graded: Iterable[Finding | UpgradeItem]) -> str:
 
 def group_alike(findings: Iterable[Finding]) -> list[list[Finding]]:
     """Findings of one cause together, which say the same of one package at several places; in the order of the first
-    ones."""
+    ones. Errors are apart; of what is a warning at its first place and a note at the others, the warning leads."""
     groups: dict[tuple, list[Finding]] = {}
     for finding in findings:
-        key = (finding.rule, finding.severity, finding.package, finding.message, finding.help, finding.targets)
+        fails = finding.severity == "error"
+        key = (finding.rule, fails, finding.package, finding.message, finding.help, finding.targets)
         groups.setdefault((*key, finding.new), []).append(finding)
+    for group in groups.values():
+        group.sort(key=lambda finding: finding.severity == "note")
     return list(groups.values())
+
+
+def select_causes(findings: Iterable[Finding], severities: Collection[str]) -> list[Finding]:
+    """The findings of all causes that are of one of these severities, in the order given."""
+    found = [*findings]
+    shown = {id(one) for group in group_alike(found) if group[0].severity in severities for one in group}
+    return [finding for finding in found if id(finding) in shown]
 
 
 def put_different_first(findings: Iterable[Finding]) -> list[Finding]:

@@ -105,6 +105,16 @@ _FailOn = Annotated[
 ]
 _Jobs = Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes for parsing.")]
 _Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")]
+_AssumeClosed = Annotated[
+    list[str],
+    typer.Option(
+        "--assume-closed",
+        help="Nobody outside of this workspace subscribes to this topic; `*` matches any text. May be repeated.",
+    ),
+]
+_SizeLength = Annotated[
+    int, typer.Option("--length", min=0, help="Elements of strings and arrays, for the sizes that are shown.")
+]
 
 # Options whose values may hold commas; others that may be repeated take several names at once.
 _WITH_COMMAS = frozenset(("target", "base", "set_", "names", "launch"))
@@ -331,10 +341,8 @@ def fields(
     ),
     topic: list[str] = _make_option("Only this topic; `*` matches any text. May be repeated or comma-separated."),
     limit: int | None = _make_option("With --bag: only so many messages, the first ones.", min=1),
-    assume_closed: list[str] = _make_option(
-        "Nobody outside of this workspace subscribes to this topic. May be repeated.", "--assume-closed"
-    ),
-    length: int = _make_option("Elements of strings and arrays, for the sizes that are shown.", default=10, min=0),
+    assume_closed: _AssumeClosed = [],  # noqa: B006
+    length: _SizeLength = 10,
     rev: _Revision = "",
     config: _Config = None,
     follow_links: _FollowLinks = False,
@@ -349,12 +357,48 @@ def fields(
 
 
 @_add_command(app)
+def values(
+    path: _Workspace = Path("."),
+    file: Path | None = _make_argument("With `replay` as the workspace: a file of witnesses.", show_default=False),
+    node: list[str] = _make_option("Only callbacks of this node. May be repeated."),
+    topic: list[str] = _make_option("Only callbacks of this topic. May be repeated."),
+    callback: list[str] = _make_option("Only this callback, by its name or the end of it. May be repeated."),
+    kind: list[str] = _make_option(
+        "Kinds of callbacks: subscriber, service, timer, action [default: subscriber]. May be repeated."
+    ),
+    text: int = _make_option("Bytes of a text at most.", default=8, min=0, max=64),
+    array: int = _make_option("Elements of an array at most.", default=3, min=0, max=64),
+    loops: int = _make_option("Rounds of a loop at most.", default=8, min=1),
+    seconds: float = _make_option("Time for each callback.", default=20.0, min=0.1),
+    replay: bool = _make_option(
+        "Run every example for real: compiles and runs code of the workspace, in processes of their own with limits.",
+        "--replay",
+        default=False,
+    ),
+    fuzz: float = _make_option("Seconds for which each C++ callback is fuzzed besides.", default=0.0, min=0.0),
+    emit: str = _make_option("Write to --out: klee, tests, yaml (commands that send) or witnesses.", default=""),
+    out: Path | None = _make_option("Folder for --emit."),
+    workspace: Path = _make_option("With `values replay FILE`: the workspace.", default=Path(".")),
+    publishers: bool = _make_option(
+        "Explore also what publishes the messages, and compare.", "--publishers/--no-publishers", default=True
+    ),
+    follow_links: _FollowLinks = False,
+    format: str = _make_option("text or json.", "--format", "-f", default="text"),
+    output: _Output = None,
+    all: bool = _make_option("Show every field, example and reason.", "--all", default=False),
+    jobs: _Jobs = None,
+    quiet: _Quiet = False,
+) -> None:
+    """Show for which values of a message callbacks act, do nothing, only log or crash, each with an example, and which
+    of these values publishers send. C++ callbacks need clang 15 or newer; nothing of the workspace runs without
+    --replay or --fuzz."""
+
+
+@_add_command(app)
 def prune(
     path: _Workspace = Path("."),
     topic: list[str] = _make_option("Only this topic. May be repeated."),
-    assume_closed: list[str] = _make_option(
-        "Nobody outside of this workspace subscribes to this topic. May be repeated.", "--assume-closed"
-    ),
+    assume_closed: _AssumeClosed = [],  # noqa: B006
     apply: bool = _make_option("Write the changes to the workspace.", "--apply", default=False),
     out: Path | None = _make_option("Write a changed copy of the workspace to this folder."),
     undo: bool = _make_option("Take back what --apply wrote.", "--undo", default=False),
@@ -367,9 +411,30 @@ def prune(
         "With --verify: start this, 'PACKAGE/PROGRAM ARGUMENTS' or a command of the shell such as 'rosbag play a.bag' "
         "or 'roslaunch a.launch'. May be repeated."
     ),
-    seconds: float = _make_option("With --verify: how long both run.", default=10.0, min=1.0),
+    seconds: float = _make_option(
+        "With --verify: how long both run. With --measure: measured seconds of each run.", default=10.0, min=1.0
+    ),
     keep_builds: Path | None = _make_option("With --verify: a folder for both versions.", "--keep-builds"),
-    length: int = _make_option("Elements of strings and arrays, for the sizes that are shown.", default=10, min=0),
+    measure: bool = _make_option(
+        "Send each topic's whole and lighter message over a link, as `measure network` does, and say what the plan "
+        "gains.",
+        "--measure",
+        default=False,
+    ),
+    bag: Path | None = _make_option(
+        "With --measure: send the messages of this bag; without one they are filled as the publishers fill them."
+    ),
+    rate: float | None = _make_option(
+        "With --measure: messages per second; default: as in the bag, else 50.", min=0.001
+    ),
+    repeat: int | None = _make_option("With --measure: repetitions; intervals are over them [default: 3].", min=1),
+    nodes: str = _make_option(
+        "With --measure: roscpp, rospy or dds; default: roscpp for ROS 1, dds for ROS 2.", default=""
+    ),
+    link: str = _make_option("With --measure: rate of each link, such as 54mbit [default: 100mbit].", default=""),
+    loopback: bool = _make_option("With --measure: no link, which needs no root.", "--loopback", default=False),
+    results: Path | None = _make_option("With --measure: a folder for the results, which a later run continues."),
+    length: _SizeLength = 10,
     config: _Config = None,
     follow_links: _FollowLinks = False,
     format: str = _make_option("One of text, json, patch.", "--format", "-f", default="text"),

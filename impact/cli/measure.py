@@ -19,20 +19,13 @@ _KEEP = 5
 
 def measure_network(*, loopback: bool, link: str, **given: Any) -> int:
     """Both sides on this machine."""
-    from ..measure.plan import parse_link
+    from ..measure.plan import choose_network
     from ..measure.run import run_network
 
     def measure(plan: NetworkPlan, messages: Messages) -> ResultsFile:
         return run_network(plan, messages, given["output"], _make_progress(given["quiet"]))
 
-    def get_network() -> dict[str, Any]:
-        if loopback and link:
-            raise UserError("--link: loopback has no link to limit; leave out --link or --loopback")
-        if loopback:
-            return {"network": "loopback", "link": 0}
-        return {"network": "namespaces", "link": parse_link(link or "100mbit")}
-
-    return _run(given, get_network, measure)
+    return _run(given, lambda: choose_network(loopback, link), measure)
 
 
 def measure_subscriber(*, master: str, address: str, **given: Any) -> int:
@@ -162,14 +155,15 @@ def _add_messages(plan: NetworkPlan, given: dict[str, Any]) -> tuple[NetworkPlan
 def _make_messages(
     path: Path, nodes: str, message: str, keep: str, lengths: Sequence[str], bag: Path | None
 ) -> Messages:  # fmt: skip
-    from ..measure.contents import make_real_messages
+    from ..measure.contents import MessageFilling, make_real_messages
+    from ..measure.gains import list_publishers
 
-    found, notes = make_real_messages(
-        message, _split(keep), path, _parse_lengths(lengths), bag, 2 if nodes == "dds" else 1
-    )
-    for note in notes:
+    publishers = list_publishers(path, message.replace("/msg/", "/")) if bag is None else ()
+    filling = MessageFilling(_parse_lengths(lengths), bag, publishers=publishers)
+    found = make_real_messages(message, _split(keep), path, filling, 2 if nodes == "dds" else 1)
+    for note in found.notes:
         say(f"rosimpact: {message}: {note}")
-    return found
+    return found.messages
 
 
 def _split(names: str) -> tuple[str, ...]:

@@ -1,16 +1,25 @@
 """rosimpact prune."""
 
-from pathlib import Path
+from __future__ import annotations
 
-from ...edges.console import UserError, format_count
+import contextlib
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...edges.console import UserError, format_count, say
 from ...edges.version import __version__
-from .output import find_style, make_command, make_progress_bar, say_notes
+from .output import find_style, make_command, make_progress_bar, say_notes, validate_choice
+
+if TYPE_CHECKING:
+    from ..measure.gains import TopicGain
+    from ..prune.session import Prepared
 
 
 @make_command("text", "json", "patch")
 def prune(
-    path: Path, *, topic, assume_closed, apply, out, undo, verify, run, seconds, keep_builds, length, config,
-    follow_links, format, output, all, jobs, quiet,
+    path: Path, *, topic, assume_closed, apply, out, undo, verify, run, seconds, keep_builds, measure, bag, rate,
+    repeat, nodes, link, loopback, results, length, config, follow_links, format, output, all, jobs, quiet,
 ) -> str | tuple[str, int]:  # fmt: skip
     """The plan of lighter messages, as text, JSON or a patch; written where that is asked for."""
     if sum((apply, undo, out is not None)) > 1:
@@ -19,6 +28,13 @@ def prune(
         raise UserError("--run and --keep-builds: are for --verify; add it")
     if verify and (undo or format != "text"):
         raise UserError("--verify: tells in text what it compared; leave out --undo and --format")
+    measuring = {"bag": bag, "rate": rate, "repeat": repeat, "nodes": nodes, "link": link, "loopback": loopback,
+                 "results": results}  # fmt: skip
+    if not measure and any(measuring.values()):
+        names = ", ".join(f"--{name}" for name, value in measuring.items() if value)
+        raise UserError(f"{names}: for --measure; add it")
+    if measure and (verify or undo or format == "patch"):
+        raise UserError("--measure: stands beside the plan; leave out --verify, --undo and --format patch")
     from ..prune import session
     from ..report.prune import render_plan_json, render_plan_text
 
@@ -39,6 +55,7 @@ def prune(
         if not done.is_equal:
             return render_verification(done, find_style(output)), 1
         text = render_verification(done, find_style(output))
+    gains = _measure(path, prepared, seconds, length, quiet, **measuring) if measure else []
     if prepared.plan.plans and apply:
         session.apply_plan(path, prepared)
         say_notes([f"written to {path}; `rosimpact prune --undo {path}` takes it back"])
@@ -50,5 +67,29 @@ def prune(
     if format == "patch":
         return session.make_diff(prepared)
     if format == "json":
-        return render_plan_json(prepared.plan, __version__)
-    return render_plan_text(prepared.plan, session.make_diff(prepared), all, find_style(output))
+        return render_plan_json(prepared.plan, __version__, gains)
+    return render_plan_text(prepared.plan, session.make_diff(prepared), all, find_style(output), gains)
+
+
+def _measure(
+    path: Path, prepared: Prepared, seconds: float, length: int, quiet: bool, *, bag: Path | None, rate: float | None,
+    repeat: int | None, nodes: str, link: str, loopback: bool, results: Path | None,
+) -> list[TopicGain]:  # fmt: skip
+    """What the plan gains on the link, topic by topic."""
+    from ..measure.gains import measure_gains
+    from ..measure.plan import NODES, Conditions, check_number, choose_network
+
+    nodes = nodes or ("roscpp" if prepared.ros == 1 else "dds")
+    validate_choice("--nodes", nodes, NODES)
+    conditions = Conditions(
+        nodes=nodes, seconds=check_number("seconds", seconds, 0.1), **choose_network(loopback, link)
+    )  # fmt: skip
+    progress = (lambda _: None) if quiet else say
+    with contextlib.ExitStack() as opened:
+        folder = results or Path(opened.enter_context(tempfile.TemporaryDirectory()))
+        folder.mkdir(parents=True, exist_ok=True)
+        return measure_gains(
+            path, prepared, conditions, rate=check_number("rates", rate) if rate else 0,
+            repeat=int(check_number("repeat", repeat or 3, 1)), bag=bag, length=length, folder=folder,
+            progress=progress,
+        )  # fmt: skip

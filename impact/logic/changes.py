@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from typing import Literal, NamedTuple
 
 import msgspec
@@ -21,6 +22,8 @@ from .match import (
     match_statements,
     normalize,
 )
+from .meaning import PARAMETER, put_given
+from .periods import parse_period
 from .statements import Gate, Outlet, PackageStatements, Path, PublishStatement, StatementStart
 
 Kind = Literal["tightened", "widened", "equivalent", "changed", "new", "gone", "trigger changed"]
@@ -32,6 +35,7 @@ _UNLED = frozenset(("unknown", "thread"))
 """What leads to the statement is not known."""
 _LONGEST = 4000
 _ABOUT = re.compile(r"(?<![\w.])[A-Za-z_][\w:]*(?:\s*\()?|[<>=!]=?|&&|\|\|")
+_WORDS = re.compile(r"[A-Za-z_]\w*")
 _DENIED = re.compile(r"(?:!\s*|not )([\w.:]+(?:->[\w.]+)*(?:\([\w.,: ]*\))?)")
 
 
@@ -106,7 +110,10 @@ def _list_stamps(side: Side) -> tuple[list[str], list[str]]:
     statements, outlets = [], []
     for at in side.list_statements():
         statement = at.statement
-        ways = sorted(repr((way.start, [(g.kind, g.text, g.meaning) for g in way.gates])) for way in statement.ways)
+        ways = sorted(
+            repr((way.start, way.times, [(g.kind, g.text, g.meaning, g.given) for g in way.gates]))
+            for way in statement.ways
+        )
         topics, kinds = sorted(at.topics), statement.type
         statements.append(
             repr((at.path, statement.function, statement.variable, topics, statement.expression, kinds, ways))
@@ -131,6 +138,7 @@ def changes(old: Side, new: Side, names: Renames = SAME) -> Iterator[LogicChange
                 gone = [at for at in gone if at not in merged]
                 come = [at for at in come if at not in merged]
                 said[place] = []
+    gone, come = _drop_repeated(pairs, gone, 0), _drop_repeated(pairs, come, 1)
     for found in said:
         yield from found
     lost, gained = old.list_unread(), new.list_unread()
@@ -177,6 +185,26 @@ def _find_merged(
         if some and is_same(one, _join_statements(other, some)):
             return some
     return []
+
+
+def _drop_repeated(
+    pairs: Sequence[tuple[StatementPlace, StatementPlace]], left: Sequence[StatementPlace], side: int
+) -> list[StatementPlace]:
+    """Statements of one side without those that a function of the other side, which is called once for each, has taken
+    up: they publish as often as before, under the same conditions. side: 0 for those that are gone."""
+    kept = list(left)
+    for pair in pairs:
+        ours, theirs = pair[side].statement, pair[1 - side].statement
+        more = sum(way.times for way in theirs.ways) - sum(way.times for way in ours.ways)
+        gates = _list_gates(ours)
+        alike = [at for at in kept if _share_publisher(at, pair[side]) and _list_gates(at.statement) == gates]
+        if len(theirs.ways) == len(ours.ways) and 0 < len(alike) * len(ours.ways) <= more:
+            kept = [at for at in kept if at not in alike]
+    return kept
+
+
+def _list_gates(statement: PublishStatement) -> frozenset[tuple]:
+    return frozenset((way.start, *((gate.kind, gate.text) for gate in way.gates)) for way in statement.ways)
 
 
 def _share_publisher(one: StatementPlace, other: StatementPlace) -> bool:
@@ -226,13 +254,17 @@ def _compare_statements(
     if moved and not heirs & {id(outlet) for outlet in other.outlets}:
         was, is_now = ", ".join(sorted(one.topics)), ", ".join(sorted(other.topics))
         yield _make_change("changed", other, outlets, was, is_now, f"published on `{is_now}`, was `{was}`")
-    first, second = one.statement, other.statement
+    first, second = _drop_impossible(one.statement), _drop_impossible(other.statement)
+    names = _add_publisher(first, second, names)
     old_shown, new_shown = _format_ways(first.ways, first), _format_ways(second.ways, second)
     if collect_conditions(first, names) != collect_conditions(second):
-        why = _explain_never_runs(second)
-        if why and not _explain_never_runs(first):
-            found = _make_change("tightened", other, outlets, old_shown, new_shown, why)
+        was, why = _explain_never_runs(first), _explain_never_runs(second)
+        if why and not was:
+            found = _make_change("tightened", other, outlets, old_shown, new_shown, f"never runs, {why}")
             yield msgspec.structs.replace(found, unreachable=True)
+            return
+        if was and not why:
+            yield _make_change("widened", other, outlets, old_shown, new_shown, f"never ran before: {was}")
             return
     whole = not _cut_off(first) and not _cut_off(second)
     unseen = _find_unseen(first, second, names) if whole else frozenset()
@@ -280,14 +312,36 @@ def _compare_statements(
         yield _make_change("equivalent", other, outlets, old_shown, new_shown, "says the same in other words")
 
 
+def _add_publisher(first: PublishStatement, second: PublishStatement, names: Renames) -> Renames:
+    """Names with that of the publisher, where it is called otherwise now."""
+    was, is_now = get_tail(first.variable), get_tail(second.variable)
+    if not was or was == is_now or was in names.words or not was.isidentifier() or not is_now.isidentifier():
+        return names
+    return names._replace(words={**names.words, was: is_now})
+
+
+def _drop_impossible(statement: PublishStatement) -> PublishStatement:
+    """A statement without ways on which a parameter is given what its guard does not let through, if others are left.
+    """
+    speech: guards.Language = "python" if statement.language == "python" else "cpp"
+    left = tuple(way for way in statement.ways if not any(_is_shut(gate, speech) for gate in way.gates))
+    return msgspec.structs.replace(statement, ways=left) if left and left != statement.ways else statement
+
+
+@lru_cache(4096)
+def _is_shut(gate: Gate, speech: guards.Language) -> bool:
+    given = [value for _, value in gate.given if PARAMETER not in value]
+    return bool(given) and guards.is_unlikely(GuardAt(gate.kind, _write_at(gate, 2), "", 0, gate.of), speech)
+
+
 def _explain_never_runs(statement: PublishStatement) -> str:
     """Why a statement never runs, as far as that is sure; empty where it may."""
     speech: guards.Language = "python" if statement.language == "python" else "cpp"
     whys: list[str] = []
     for way in statement.ways:
-        why = next((f"never runs, it stands {gate.text}" for gate in way.gates if gate.kind == "never"), "")
+        why = next((f"it stands {gate.text}" for gate in way.gates if gate.kind == "never"), "")
         if not why:
-            sides = [[gate] for gate in way.gates if gate.kind in ("if", "unless")]
+            sides = [[gate] for gate in way.gates if gate.kind in ("if", "unless", "cpp")]
             functions = dict.fromkeys(gate.of for gate in way.gates)
             sides += [[gate for gate in way.gates if gate.fixed and gate.of == of] for of in functions]
             at_once = next((side for side in sides if side and _contradicts(side, speech)), None)
@@ -297,7 +351,7 @@ def _explain_never_runs(statement: PublishStatement) -> str:
                 fewer = [one for one in at_once if one is not gate]
                 at_once = fewer if fewer and _contradicts(fewer, speech) else at_once
             texts = " and ".join(dict.fromkeys(f"`{_write_gate(gate, speech == 'python')}`" for gate in at_once))
-            why = f"never runs, {texts} cannot hold"
+            why = f"{texts} cannot hold"
         whys.append(why)
     return "" if _cut_off(statement) else "; ".join(dict.fromkeys(whys))
 
@@ -376,26 +430,41 @@ def _compare_guards(old: Sequence[Path], new: Sequence[Path], names: Renames, la
     """What happened to the guards of some ways, and the clause that says it. Names for conditions are put back into the
     conditions first; where that is more than can be compared, what is written decides."""
     speech: guards.Language = "python" if language == "python" else "cpp"
-    meant_old, meant_new = _build_guard_ways(old, meant=True), _build_guard_ways(new, meant=True)
-    written_old, written_new = _build_guard_ways(old), _build_guard_ways(new)
     reading = guards.NameReading(names.words, speech)
-    kind = guards.compare_ways(meant_old, meant_new, reading)
-    reported = (meant_old, meant_new)
-    if (meant_old, meant_new) != (written_old, written_new) and kind != "equivalent":
-        written = guards.compare_ways(written_old, written_new, reading)
-        if (
-            written == "equivalent"
-            and kind == "changed"
-            and _collect_condition_names(meant_old, names) == _collect_condition_names(meant_new, SAME)
-        ):
-            return "equivalent", ""  # what is asked is called otherwise, of the same things
-        if written != "equivalent":
-            reported = (written_old, written_new)
-            kind = written if kind == "changed" else kind
-    if kind != "equivalent" and _count_loops(old) != _count_loops(new):
-        # A loop that comes or goes is a matter of how often, too.
-        return "changed", guards.explain_ways(*reported, reading)
-    return kind, guards.explain_ways(*reported, reading) if kind != "equivalent" else ""
+    written, meant, known = ((_build_guard_ways(old, depth), _build_guard_ways(new, depth)) for depth in (0, 1, 2))
+    kind = guards.compare_ways(*known, reading)
+    if kind == "equivalent":
+        return kind, ""
+    kinds: dict[tuple[Ways, Ways], guards.Kind] = {pair: guards.compare_ways(*pair, reading) for pair in (written, meant, known)}
+    if kinds[written] == "equivalent":
+        same = _collect_condition_names(known[0], names) == _collect_condition_names(known[1], SAME)
+        if (kind == "changed" and same) or _resolves_more(old, new) or _resolves_more(new, old):
+            return "equivalent", ""  # what is asked is called otherwise, of the same things; or is known on one side
+    if kind == "changed" and kinds[written] != "equivalent" and _means_same(old, new):
+        kind = kinds[written]
+    if _count_loops(old) != _count_loops(new):
+        kind = "changed"  # a loop that comes or goes is a matter of how often, too
+    clauses = [guards.explain_ways(*pair, reading) for pair in (written, meant) if kinds[pair] != "equivalent"]
+    return kind, min(clauses, key=len) if clauses else guards.explain_ways(*known, reading)
+
+
+def _resolves_more(ways: Sequence[Path], others: Sequence[Path]) -> bool:
+    """Whether a name that is put back on some ways stands there as it is on others, in guards that are written alike.
+    """
+    meant = {gate.text: gate for way in ways for gate in way.gates}
+    return any(
+        not {*meant[gate.text].names}.difference(gate.names).isdisjoint(_WORDS.findall(gate.meaning or gate.text))
+        for way in others
+        for gate in way.gates
+        if gate.text in meant
+    )
+
+
+def _means_same(old: Sequence[Path], new: Sequence[Path]) -> bool:
+    """Whether what is written on both sides means the same on both."""
+    sides = ({gate.text: (gate.meaning, gate.given) for way in ways for gate in way.gates} for ways in (old, new))
+    before, after = sides
+    return all(after.get(text, meaning) == meaning for text, meaning in before.items())
 
 
 def _count_loops(ways: Sequence[Path]) -> set[int]:
@@ -403,11 +472,17 @@ def _count_loops(ways: Sequence[Path]) -> set[int]:
     return {sum(gate.kind in ("while", "for", "do") for gate in way.gates) for way in ways}
 
 
-def _build_guard_ways(ways: Iterable[Path], meant: bool = False) -> Ways:
+def _build_guard_ways(ways: Iterable[Path], depth: int = 0) -> Ways:
+    """The guards of ways. depth: 0 as written, 1 with names put back, 2 with parameters as what they are, too."""
     return tuple(
-        tuple(GuardAt(gate.kind, (meant and gate.meaning) or gate.text, "", 0, gate.of) for gate in way.gates)
-        for way in ways
+        tuple(GuardAt(gate.kind, _write_at(gate, depth), "", 0, gate.of) for gate in way.gates) for way in ways
     )
+
+
+def _write_at(gate: Gate, depth: int) -> str:
+    text = (depth and gate.meaning) or gate.text
+    marked = tuple(one for one in gate.given if depth == 2 or PARAMETER in one[1])
+    return put_given(text, marked if depth else ()) if marked else text
 
 
 def _collect_condition_names(ways: Ways, names: Renames) -> set[tuple[str, ...]]:
@@ -461,6 +536,10 @@ def _group_starts(statement: PublishStatement, names: Renames) -> dict[tuple[str
 
 def _normalize_detail(detail: str) -> str:
     """A period or name without what spelling alone decides."""
+    word, _, paced = detail.partition(" ")
+    period = parse_period(paced if word in ("every", "rate") else detail)
+    if period is not None:
+        return f"{word} {period}" if word in ("every", "rate") else f"{period}"
     text = "".join(detail.split()).replace("this->", "").replace("this.", "")
     return text.strip("/") if "/" in text else text
 

@@ -31,6 +31,10 @@ _INTEGERS = frozenset(("int", "long", "short", "unsigned", "signed", "char", "si
 _WHOLE_TYPE = re.compile(r"(?:std::)?u?int(?:_fast|_least)?\d*_t|(?:std::)?s?size_t")
 _PASSED_ON = frozenset(("std::move", "std::as_const", "std::forward", "std::ref", "std::cref"))
 _ABSOLUTE = frozenset(("abs", "std::abs", "fabs", "std::fabs", "fabsf"))
+_MATH = frozenset((
+    "std::isnan", "std::isinf", "std::isfinite", "std::min", "std::max", "std::sqrt", "std::pow", "std::hypot",
+    "std::round", "std::floor", "std::ceil", "std::fmod", "std::atan2", "std::signbit",
+))  # fmt: skip
 _SUFFIX = re.compile(r"(?<=[\d.])[uUlLfFzZ]+$")
 _DURATION = re.compile(r"([\d.']+)(h|min|s|ms|us|ns)$")
 _SECONDS = {"h": "3600", "min": "60", "s": "1", "ms": "1e-3", "us": "1e-6", "ns": "1e-9"}
@@ -96,6 +100,23 @@ def loop(head: str) -> GuardReading:
         else [(name, make_member(element, f"{i}")) for i, name in enumerate(bound)]
     )
     return GuardReading((Conjunct(f"for ({head})" if match is None else head, element),), tuple(names))
+
+
+def _make_contained(owner: Term, key: Term) -> Term:
+    """That a container has a key."""
+    return compare("<", Term("whole", "0"), Term("call", "", (make_member(owner, "count"), key)))
+
+
+def _compare(operator: str, left: Term, right: Term) -> Term:
+    """A comparison; `m.find(key) != m.end()` says that the container has it."""
+    if operator in ("==", "!="):
+        for one, end in ((left, right), (right, left)):
+            if one.kind == end.kind == "call" and len(one.parts) == 2 and len(end.parts) == 1:
+                (owner, found), (other, last) = split_owner(one.parts[0]), split_owner(end.parts[0])
+                if owner is not None and owner == other and found == "find" and last in ("end", "cend"):
+                    contained = _make_contained(owner, one.parts[1])
+                    return contained if operator == "!=" else negate(contained)
+    return compare(operator, left, right)
 
 
 class _Reader:
@@ -231,7 +252,7 @@ class _Reader:
                 return self.make_opaque(node)
             right = self.parse_term(operands[position], depth)
             if operator in FLIPPED:
-                result = compare(operator, result, right)
+                result = _compare(operator, result, right)
             elif operator in ("+", "-", "*"):
                 result = Term(operator, "", (result, right))
             else:
@@ -253,7 +274,7 @@ class _Reader:
         text = re.sub(r"\s+", "", self.join_tokens(node)).removeprefix("::")
         if text in ("std::nullopt", "nullopt", "boost::none"):
             return NULL
-        return Term("name", text)
+        return Term("name", text.removeprefix("std::") if text in _MATH else text)
 
     read_qualified_identifier = read_template_function = read_identifier
 
@@ -292,6 +313,11 @@ class _Reader:
                     return compare("==", Term("size", "", (owner,)), Term("whole", "0"))
                 if method == "has_value":
                     return Term("truth", "", (owner,))
+                if method == "load":
+                    return owner  # of an atomic
+        owner, method = split_owner(function) if len(arguments) == 1 else (None, "")
+        if owner is not None and method == "contains":
+            return _make_contained(owner, arguments[0])
         return Term("call", "", (function, *arguments))
 
     def find_cast_type(self, called: Any) -> str | None:

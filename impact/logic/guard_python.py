@@ -24,6 +24,7 @@ from .guard_terms import (
     make_place,
     negate,
     parse_number,
+    split_owner,
 )
 
 _COMPARED = {ast.Eq: "==", ast.NotEq: "!=", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
@@ -208,6 +209,9 @@ class _Reader:
 
     def expand_membership(self, left: Term, written: ast.expr, right: Term, depth: int) -> Term:
         """`left in (a, b)` as `left == a or left == b`; anything else is as it is."""
+        if right.kind == "call" and len(right.parts) == 1:
+            owner, method = split_owner(right.parts[0])
+            right = owner if owner is not None and method in ("keys", "iterkeys") else right
         listed = written.elts if isinstance(written, (ast.Tuple, ast.List, ast.Set)) else None
         if listed is None or len(listed) > _MOST_MEMBERS or any(isinstance(part, ast.Starred) for part in listed):
             return Term("op", "in", (left, right))
@@ -250,6 +254,9 @@ class _Reader:
         function = self.parse_term(node.func, depth)
         arguments = [self.parse_term(argument, depth) for argument in node.args]
         named = sorted((word.arg or "**", self.parse_term(word.value, depth)) for word in node.keywords)
+        owner, method = split_owner(function) if len(arguments) == 1 and not named else (None, "")
+        if owner is not None and method == "has_key":
+            return Term("op", "in", (arguments[0], owner))
         if len(arguments) == 1 and not named and isinstance(node.func, ast.Name):
             known = {"len": "size", "bool": "truth", "abs": "abs"}.get(node.func.id)
             if known:

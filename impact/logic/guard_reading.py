@@ -20,12 +20,15 @@ from .guard_terms import (
     negate,
     rebuild_term,
     rename_term,
+    rewrite,
     split_outside,
     split_owner,
     substitute_names,
 )
+from .meaning import PARAMETER
 
 Language = Literal["cpp", "python"]
+_PARAMETER = re.compile(rf"(\w+?){PARAMETER}(\d+)")
 _PLACE = re.compile(r"[A-Za-z]\w*(?<!_)")
 """A variable that is no member, as far as the name tells."""
 
@@ -42,11 +45,21 @@ def collect_pieces(way: Sequence[GuardAt], language: Language, renames: Mapping[
             term = find_elements(substitute_names(piece.term, known)) if known else piece.term
             if renames:
                 term = rename_term(term, renames)
+            text = piece.text
+            if PARAMETER in text:
+                term, text = rewrite(term, _drop_parameter_name), _PARAMETER.sub(r"\1", text)
             if term.kind != "true":
-                result.append(Conjunct(piece.text, term, place))
+                result.append(Conjunct(text, term, place))
         for name, value in reading.names:
             define(known, name, value)
     return tuple(result)
+
+
+def _drop_parameter_name(term: Term) -> Term | None:
+    """A parameter by its place alone."""
+    if term.kind in ("name", "opaque") and PARAMETER in term.text:
+        return Term(term.kind, _PARAMETER.sub(r"parameter \2", term.text), term.parts)
+    return None
 
 
 def drop_this(sides: Sequence[Sequence[Sequence[Conjunct]]]) -> tuple[tuple[tuple[Conjunct, ...], ...], ...]:

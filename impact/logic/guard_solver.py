@@ -15,7 +15,9 @@ from typing import Any
 from .guard_reading import Language
 from .guard_terms import FORMULAS, NULL, Term, split_owner
 
-_ENUMERATOR = re.compile(r"(?P<scope>.+)::(?:[A-Z]|k[A-Z])\w*|(?P<class>.+)\.[A-Z][A-Z0-9_]+")
+_ENUMERATOR = re.compile(
+    r"(?P<type>(?:.+::)?[A-Z]\w*)::\w+|(?P<scope>.+)::(?:[A-Z]|k[A-Z])\w*|(?P<class>.+)\.[A-Z][A-Z0-9_]+"
+)
 _CONSTANT = re.compile(r"[A-Z][A-Z0-9_]+|k[A-Z]\w*")
 _COUNTS = frozenset(
     ("count", "getNumSubscribers", "get_subscription_count", "get_num_connections", "getNumPublishers", "use_count")
@@ -87,6 +89,11 @@ class Solver:
         """Whether a condition can hold. Raises Undecided."""
         (asked,) = self.build_formulas(term)
         return self.make_checker(asked=asked)("asked")
+
+    def is_likely(self, term: Term) -> bool:
+        """Whether a condition can hold when different constants are different, too. Raises Undecided."""
+        (asked,) = self.build_formulas(term)
+        return self.make_checker(asked=asked)("asked", "supposed")
 
     def build_formulas(self, *terms: Term) -> list[str]:
         """The terms as formulas, in the language of SMT-LIB; `script` says what is in them."""
@@ -352,7 +359,7 @@ class Solver:
         for term, value in self.numbers.items():
             match = _ENUMERATOR.fullmatch(term.text) if term.kind == "name" else None
             if match:
-                scopes.setdefault(match["scope"] or match["class"], []).append(value)
+                scopes.setdefault(match["type"] or match["scope"] or match["class"], []).append(value)
             if self.is_whole(term):
                 result.append(f"(is_int {value})")
                 if term.kind != "op":

@@ -8,9 +8,11 @@ the two conditions. That calls have effects and that variables are assigned betw
 guards would then contradict each other: nothing but what stands in both is then known of them.
 """
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Literal, NamedTuple
 
+from ...edges.groups import group_pairs
 from ..model.flow.graph import GuardAt
 from .guard_reading import Language, collect_pieces, drop_this
 from .guard_solver import Solver, Undecided
@@ -20,6 +22,7 @@ from .guard_words import describe_ways
 Kind = Literal["tightened", "widened", "equivalent", "changed"]
 Guards = Sequence[GuardAt]
 Ways = Sequence[Guards]
+_WORDS_JOINED = re.compile(r"[._]")
 _Side = tuple[tuple[Conjunct, ...], ...]
 
 MILLISECONDS = 100
@@ -82,6 +85,15 @@ def is_impossible(guards: Guards, language: Language) -> bool:
         return False
 
 
+def is_unlikely(guard: GuardAt, language: Language) -> bool:
+    """Whether a guard cannot hold when different constants are different."""
+    pieces = collect_pieces([guard], language, {})
+    try:
+        return not Solver(language, MILLISECONDS).is_likely(_join_pieces(pieces))
+    except Undecided:
+        return False
+
+
 def _collect_texts(ways: Ways) -> frozenset[tuple[tuple[str, str], ...]]:
     return frozenset(tuple((guard.kind, guard.text) for guard in way) for way in ways)
 
@@ -99,8 +111,9 @@ def _build_sides(old: Ways, new: Ways, reading: NameReading) -> tuple[_Side, _Si
 def _follow_moves(before: _Side, after: _Side) -> _Side:
     """The old side with members named as the new one does that have moved into an object inside theirs, or out of one:
     `planner.ready` and `planner.state.ready`, where each side has but one of them."""
-    was, is_now = _collect_paths(before), _collect_paths(after)
-    moves: dict[str, str] = {}
+    before = _follow_getters(before, after)
+    was, is_now = _collect_paths(before, after), _collect_paths(after, before)
+    moves = _pair_constants(was - is_now, is_now - was)
     for old in was - is_now:
         new = [name for name in is_now - was if _is_moved(old, name)]
         if len(new) == 1 and sum(_is_moved(other, new[0]) for other in was - is_now) == 1:
@@ -114,12 +127,79 @@ def _follow_moves(before: _Side, after: _Side) -> _Side:
     return tuple(tuple(piece._replace(term=rewrite(piece.term, change)) for piece in way) for way in before)
 
 
-def _collect_paths(side: _Side) -> frozenset[str]:
-    return frozenset(name for way in side for piece in way for name in list_names(piece.term) if "." in name)
+def _follow_getters(before: _Side, after: _Side) -> _Side:
+    """The old side with members that the new one asks by a method of their name, or the other way round."""
+    (was_asked, was_read), (asked, read) = _collect_asked(before), _collect_asked(after)
+    turned = {**_select_turned(was_asked, was_read, read, asked), **_select_turned(was_read, was_asked, asked, read)}
+    if not turned:
+        return before
+
+    def change(term: Term) -> Term | None:
+        if _is_getter(term) and _strip(term.parts[0].text) in turned:
+            return Term("name", turned[_strip(term.parts[0].text)])
+        if term.kind == "name" and "." in term.text and _strip(term.text) in turned:
+            return Term("call", "", (Term("name", turned[_strip(term.text)]),))
+        return None
+
+    return tuple(tuple(piece._replace(term=rewrite(piece.term, change)) for piece in way) for way in before)
+
+
+def _select_turned(
+    old: Mapping[str, str], old_others: Mapping[str, str], new: Mapping[str, str], new_others: Mapping[str, str]
+) -> dict[str, str]:
+    """Paths of one kind that are of the other kind now, as they are written now; by what they are without underscores.
+    """
+    turned = (old.keys() - old_others.keys()) & (new.keys() - new_others.keys())
+    return {path: new[path] for path in turned}
+
+
+def _collect_asked(side: _Side) -> tuple[dict[str, str], dict[str, str]]:
+    """The paths that are called without arguments, and those that are read; by what they are without underscores."""
+    called: dict[str, str] = {}
+    read: dict[str, str] = {}
+    waiting = [piece.term for way in side for piece in way]
+    while waiting:
+        term = waiting.pop()
+        if _is_getter(term):
+            called[_strip(term.parts[0].text)] = term.parts[0].text
+            continue
+        if term.kind == "name" and "." in term.text:
+            read[_strip(term.text)] = term.text
+        waiting.extend(term.parts)
+    return called, read
+
+
+def _strip(path: str) -> str:
+    """A path without underscores that mark a member."""
+    return path.rstrip("_")
+
+
+def _is_getter(term: Term) -> bool:
+    return term.kind == "call" and len(term.parts) == 1 and term.parts[0].kind == "name" and "." in term.parts[0].text
+
+
+def _pair_constants(gone: frozenset[str], come: frozenset[str]) -> dict[str, str]:
+    """Constants that another scope has now, by their names: each the only one of its name."""
+    sides = [group_pairs((name.rpartition("::")[2], name) for name in names if "::" in name) for names in (gone, come)]
+    return {
+        names[0]: sides[1][last][0]
+        for last, names in sides[0].items()
+        if last[:1].isupper() and len(names) == len(sides[1].get(last, ())) == 1
+    }
+
+
+def _collect_paths(side: _Side, other: _Side) -> frozenset[str]:
+    """The paths of a side, and names that have the words of a path of the other side."""
+    sides = [{name for way in one for piece in way for name in list_names(piece.term)} for one in (side, other)]
+    joined = {_WORDS_JOINED.sub("", name) for name in sides[1] if "." in name}
+    return frozenset(name for name in sides[0] if "." in name or "::" in name or _WORDS_JOINED.sub("", name) in joined)
 
 
 def _is_moved(one: str, other: str) -> bool:
-    """Whether two paths begin and end alike, and one has all of the other besides."""
+    """Whether two paths begin and end alike, and one has all of the other besides; or have the same words, however
+    these are joined."""
+    if _WORDS_JOINED.sub("", one) == _WORDS_JOINED.sub("", other) and one.count(".") != other.count("."):
+        return True
     long, short = sorted((one.split("."), other.split(".")), key=len, reverse=True)
     if len(long) == len(short) or (long[0], long[-1]) != (short[0], short[-1]) or long[:2] == ["this", short[-1]]:
         return False

@@ -2,13 +2,16 @@
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from difflib import SequenceMatcher
 from typing import NamedTuple, TypeVar
 
 from ..model.flow.code import get_outer, get_tail
 from .statements import Outlet, PackageStatements, PublishStatement
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
+_PIECE = re.compile(r"\w+|[^\w\s]")
 _ENOUGH = 9
+_LONGEST = 400
 _T = TypeVar("_T")
 
 
@@ -65,12 +68,16 @@ def match_statements(
     """(pairs, gone, come). Statements that stand where they stood, as they did, are matched first; then those that have
     most in common, unless that is too little."""
     keys = _make_exact_key, _make_near_key
-    return _match(old, new, names, keys, _score, lambda one, other: abs(one.statement.line - other.statement.line))
+
+    def rate_distance(one: StatementPlace, other: StatementPlace) -> tuple[int, int]:
+        return -_rate_likeness(one, other, names), abs(one.statement.line - other.statement.line)
+
+    return _match(old, new, names, keys, _score, rate_distance)
 
 
 def match_outlets(old: Sequence[OutletAt], new: Sequence[OutletAt], names: Renames) -> list[tuple[OutletAt, OutletAt]]:
     """Pairs of publishers that are the same one; those that are new or gone are in none."""
-    return _match(old, new, names, (_make_outlet_key, _make_outlet_place_key), _score_outlets, lambda *_: 0)[0]
+    return _match(old, new, names, (_make_outlet_key, _make_outlet_place_key), _score_outlets, lambda *_: (0, 0))[0]
 
 
 def _match(
@@ -79,7 +86,7 @@ def _match(
     names: Renames,
     keys: Iterable[Callable[[_T, Renames], tuple]],
     score: Callable[[_T, _T, Renames], int],
-    apart: Callable[[_T, _T], int],
+    apart: Callable[[_T, _T], tuple[int, int]],
 ) -> tuple[list[tuple[_T, _T]], list[_T], list[_T]]:
     """Pairs that have a key in common, one key after the other; of the rest those that are most alike, of equals the
     least apart. And what is left of both."""
@@ -138,9 +145,11 @@ def collect_conditions(statement: PublishStatement, names: Renames = SAME) -> fr
 
 def _make_place_key(at: StatementPlace, names: Renames) -> tuple:
     statement = at.statement
-    return names.map_path(at.path), names.map_text(
-        normalize(statement.function)
-    ), names.map_text(get_tail(statement.variable))
+    return (
+        names.map_path(at.path),
+        names.map_text(normalize(statement.function)),
+        names.map_text(get_tail(statement.variable)),
+    )
 
 
 def _make_exact_key(at: StatementPlace, names: Renames) -> tuple:
@@ -179,6 +188,22 @@ def _score(one: StatementPlace, other: StatementPlace, names: Renames) -> int:
     return score
 
 
+def _rate_likeness(one: StatementPlace, other: StatementPlace, names: Renames) -> int:
+    """How alike the conditions of two statements are, in tenths, whatever starts them."""
+    sides = [
+        [
+            word
+            for way in at.statement.ways[:1]
+            for gate in way.gates
+            for word in _PIECE.findall(here.map_text(gate.text))
+        ]
+        for at, here in ((one, names), (other, SAME))
+    ]
+    if max(map(len, sides)) > _LONGEST:
+        return 0
+    return round(10 * SequenceMatcher(None, sides[0], sides[1], False).ratio())
+
+
 def normalize(function: str) -> str:
     """A function's name, lambdas by what they stand in: their places move."""
     return re.sub(r"lambda@[\d:]+", "lambda", function)
@@ -203,4 +228,6 @@ def _score_outlets(one: OutletAt, other: OutletAt, names: Renames) -> int:
     score = 6 * (first.topic == second.topic and bool(first.topic))
     score += 5 * (variable == get_tail(second.variable) and bool(variable))
     score += 3 * (names.map_path(one.path) == other.path) + 2 * (first.type == second.type and bool(first.type))
-    return score
+    # A variable of its name in another class is another one, unless it has the same topic.
+    moved = get_outer(names.map_text(first.function)) != get_outer(second.function)
+    return score - 3 * (moved and first.topic != second.topic)

@@ -19,7 +19,8 @@ from ..model.flow.nodes import BuiltPackage, asks_for_name, find_entry_point
 from ..model.flow.qos import find_qos
 from ..model.flow.values import FlowValue
 from .history import PackageFile, PackageState
-from .meaning import Meaning, split_conjuncts
+from .meaning import Given, Meaning, select_given, split_conjuncts
+from .periods import parse_period
 
 _LIVE = frozenset(
     ("ros::ok()", "rclcpp::ok()", "ok()", "true", "True", "1", "rclpy.ok()", "not rospy.is_shutdown()",
@@ -44,6 +45,8 @@ class Gate(msgspec.Struct, frozen=True, array_like=True, gc=False):
     of: str
     meaning: str = ""
     fixed: bool = False
+    given: Given = ()
+    names: tuple[str, ...] = ()
 
 
 class StatementStart(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -57,12 +60,14 @@ class StatementStart(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class Path(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """One way to a statement; gates outermost first. Loops that last as long as the node does are not among them. root:
     the function where it begins when nothing is seen that leads to it: no caller, or nobody who makes the object.
-    functions: those that it runs through before the statement's own."""
+    functions: those that it runs through before the statement's own. times: how many ways with the same guards it
+    stands for."""
 
     start: StatementStart
     gates: tuple[Gate, ...] = ()
     root: str = ""
     functions: tuple[str, ...] = ()
+    times: int = 1
 
 
 class Outlet(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -277,10 +282,11 @@ class _Digester:
 
     def _build_path(self, way: CallWay, fn: Fn, own: tuple[GuardAt, ...]) -> Path:
         trigger, guards = self._find_trigger(way, fn), (*way.guards, *own)
-        start = StatementStart(trigger.kind, trigger.detail)
+        start = StatementStart(trigger.kind, self._find_period(trigger) or trigger.detail)
         unsaid = trigger.kind in ("start", "unknown")
         unled = trigger.kind == "unknown" or (trigger.kind == "start" and trigger.detail not in ("", "main"))
         gates: list[Gate] = []
+        given = self._list_given(way, fn)
         for place, guard in enumerate(guards):
             asked, lives = _strip_liveness(guard.text) if guard.kind in _LOOPS else (guard.text, False)
             loops = any(one.kind in _LOOPS for one in guards[:place])
@@ -290,11 +296,35 @@ class _Digester:
                 kind = "loop" if trigger.kind == "start" else "thread"
                 start = StatementStart(kind, self._find_rate(guard) or (start.detail if start.kind == kind else ""))
             if asked:
-                meaning = self.meaning.resolve_guard(guard) if asked == guard.text else ""
-                gates.append(Gate(guard.kind, asked, guard.of, meaning, self._is_fixed(guard)))
+                meaning, names = self.meaning.resolve_guard(guard) if asked == guard.text else ("", ())
+                known = select_given(meaning or asked, given.get((guard.path, guard.of), ()))
+                gates.append(Gate(guard.kind, asked, guard.of, meaning, self._is_fixed(guard), known, names))
         if start.kind in ("start", "unknown"):
             start = StatementStart(start.kind)
-        return Path(start, tuple(gates), self._find_root(trigger) if unled else "", way.functions)
+        return Path(start, tuple(gates), self._find_root(trigger) if unled else "", way.functions, way.times)
+
+    @cache_method
+    def _find_period(self, trigger: Trigger) -> str:
+        """The period of a timer that is written with names, where these stand for a number; empty otherwise."""
+        if trigger.kind != "timer" or parse_period(trigger.detail) is not None:
+            return ""
+        functions = self.join.code.functions_in.get(trigger.path, ())
+        maker = next((fn for fn in functions if any(call.line == trigger.line for call in fn.facts.calls)), None)
+        meant = self.meaning.resolve_text(trigger.detail, maker, trigger.line) if maker is not None else ""
+        return meant if parse_period(meant) is not None else ""
+
+    def _list_given(self, way: CallWay, fn: Fn) -> dict[tuple[str, str], Given]:
+        """What the parameters of functions are on a way, as far as guards ask for them; by path and name."""
+        root = way.steps[0][0] if way.steps else fn
+        known = self.meaning.mark_parameters(root)
+        found = {(root.source.path, root.name): known}
+        for (caller, call), callee in zip(way.steps, [*(one for one, _ in way.steps[1:]), fn], strict=False):
+            if call is not None:
+                asked = self.join.list_asked_parameters(callee)
+                known = self.meaning.resolve_arguments(call, caller, callee, asked, known) if asked else ()
+            if known:
+                found[callee.source.path, callee.name] = known
+        return found
 
     def _find_root(self, trigger: Trigger) -> str:
         """The whole name of the function that a way begins in."""
@@ -388,7 +418,7 @@ def _resolve_local_topic(site: Site, value: FlowValue) -> str:
     text, prefix = value.text, site.prefix
     if not prefix or text[:1] in ("/", "~"):
         return text
-    return f"~{text}" if prefix == "~" else f"{prefix}/{text}"
+    return f"~{text}" if prefix == "~" else f"{prefix.rstrip('/')}/{text}"
 
 
 def _strip_liveness(text: str) -> tuple[str, bool]:

@@ -25,7 +25,7 @@ from .namespaces import NetworkSite
 from .plan import TAIL, Conditions, NetworkCell
 
 _CONNECT = 40.0
-_START_AHEAD = 0.2
+_START_AHEAD = 0.1
 _IDLE, _LONGEST = 0.4, 60.0
 _NANO = 1_000_000_000
 CLOCKS = {"monotonic": time.CLOCK_MONOTONIC, "realtime": time.CLOCK_REALTIME}

@@ -5,7 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
+from ...edges.console import UserError
+
 ROUND_TRIPS = 200
+SLEWED = 500e-6
+"""As much of a second's length as daemons speed a clock up or slow it down (RFC 5905, appendix A.5.5.6)."""
 
 
 class RoundTrip(NamedTuple):
@@ -45,3 +49,17 @@ def take_trips(read: Callable[[], int], ask: Callable[[], tuple[int, int]], numb
         received, sent_back = ask()
         trips.append(RoundTrip(asked, received, sent_back, read()))
     return estimate_offset(trips)
+
+
+def join_offsets(before: ClockOffset, after: ClockOffset, seconds: float) -> ClockOffset:
+    """The offset in the middle of a measurement from those before and behind it, which took so many seconds. What it
+    moved in between adds to the uncertainty. Raises UserError where it moved further than a clock can that is only
+    slewed: one of them was set."""
+    moved = abs(after.nanoseconds - before.nanoseconds)
+    unsure = max(before.uncertainty, after.uncertainty)
+    if moved > before.uncertainty + after.uncertainty + SLEWED * seconds * 1e9:
+        raise UserError(
+            f"the clocks of both machines moved by {moved / 1e6:.2f} ms against each other in {seconds:.1f} s, so that "
+            "latencies cannot be told; let both be synchronised (chrony, ntpd) and settle first"
+        )
+    return ClockOffset((before.nanoseconds + after.nanoseconds) / 2, unsure + moved / 2)

@@ -7,6 +7,7 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
+from typing import NamedTuple
 
 import msgspec
 
@@ -14,6 +15,7 @@ from ...edges.console import UserError
 from ..analysis.message_files import MessageFolders
 from ..facts import interface
 from ..facts.interface import Interface
+from ..model.fields.report import PublisherFields
 from ..prune.light import lighten
 from ..targets.surface.store import load_shipped
 from .bench import Messages, PreparedMessage
@@ -37,35 +39,85 @@ def make_synthetic_messages(plan: NetworkPlan) -> Messages:
     return made
 
 
-def make_real_messages(
-    type_: str, keep: Sequence[str], path: Path, lengths: Mapping[str, int], bag: Path | None, ros: int
-) -> tuple[Messages, list[str]]:  # fmt: skip
-    """The message `package/Type`, whole and with some fields alone, and notes on how it is filled. path: the workspace.
-    lengths: of arrays and texts by path. bag: whose messages are sent instead. ros: the generation of the nodes. Raises
-    UserError."""
+class MessageFilling(NamedTuple):
+    """What a real message is filled with. lengths: of arrays and texts by path, as the user gives them. bag: whose
+    messages are sent instead; topic: of that topic alone, where one is named. publishers: the statements of a workspace
+    that publish it, whose lengths count where the user gives none. length: of what these set, and do not tell how
+    long."""
+
+    lengths: Mapping[str, int] = {}
+    bag: Path | None = None
+    topic: str = ""
+    publishers: Sequence[PublisherFields] = ()
+    length: int = 10
+
+
+class RealMessages(NamedTuple):
+    """A message of a workspace, whole and pruned. notes: on how it is filled. rate: of the bag's messages in Hz, None
+    where that is not known."""
+
+    messages: Messages
+    notes: list[str]
+    rate: float | None = None
+
+
+def make_real_messages(type_: str, keep: Sequence[str], path: Path, filling: MessageFilling, ros: int) -> RealMessages:
+    """The message `package/Name`, whole and with some fields alone. path: the workspace. ros: the generation of the
+    nodes. Raises UserError."""
     if type_.replace("/msg/", "/").count("/") != 1:
         raise UserError(f"--message {type_}: write package/Type")
     type_ = type_.replace("/msg/", "/")
     definitions = _Definitions(path, ros)
     schema = make_schema(type_, definitions.find)
-    notes: list[str] = []
-    if bag is not None:
-        values, topics = _read_bag(bag, type_, schema)
-        notes.append(f"{len(values)} messages of {', '.join(topics)} are sent in turn")
+    rate = None
+    if filling.bag is not None:
+        values, notes, rate = _read_bag(filling.bag, type_, filling.topic, schema)
     else:
-        known = list(dict.fromkeys(list_lengths(schema)))
-        if wrong := [each for each in lengths if each not in known]:
-            can = f"can be given for {', '.join(known)}" if known else "are of no use: nothing in it varies in length"
-            raise UserError(f"--length {wrong[0]}: `{type_}` has no such array or text; lengths {can}")
+        lengths, notes = _choose_lengths(type_, schema, filling)
         _check_size(schema, lengths)
-        if empty := [each for each in known if each not in lengths]:
-            notes.append(f"empty, since no --length is given: {', '.join(empty)}")
         values = [encode(schema, fill(schema, lengths))]
     made = {(0, FULL): PreparedMessage(schema, values)}
     if keep:
         pruned = make_schema(definitions.prune(type_, keep), definitions.find)
         made[0, PRUNED] = PreparedMessage(pruned, [encode(pruned, decode(schema, value)) for value in values])
-    return made, notes
+    return RealMessages(made, notes, rate)
+
+
+def _choose_lengths(type_: str, schema: SentSchema, filling: MessageFilling) -> tuple[dict[str, int], list[str]]:
+    """The lengths of arrays and texts, and notes on them: those that the user gives, else those of the code that
+    publishes the message. What nobody sets is empty, as in the message itself. Raises UserError."""
+    known = list(dict.fromkeys(list_lengths(schema)))
+    if wrong := [each for each in filling.lengths if each not in known]:
+        can = f"can be given for {', '.join(known)}" if known else "are of no use: nothing in it varies in length"
+        raise UserError(f"--length {wrong[0]}: `{type_}` has no such array or text; lengths {can}")
+    lengths = dict(filling.lengths)
+    left = [each for each in known if each not in lengths]
+    if not filling.publishers:
+        return lengths, [f"empty, since no --length is given: {', '.join(left)}"] if left else []
+    written = {name: max(one.get(name, 0) for one in map(_get_lengths, filling.publishers)) for name in left}
+    unsure = any(one.unknown for one in filling.publishers)
+    taken = [name for name in left if not written[name] and (unsure or _is_set(name, filling.publishers))]
+    lengths |= written | dict.fromkeys(taken, filling.length)
+    told = [f"{name} {length}" for name, length in written.items() if length]
+    places = ", ".join(dict.fromkeys(f"{one.path}:{one.line}" for one in filling.publishers))
+    notes = [f"as {places} fills it: {', '.join(told) or 'no length is written there'}"] if left else []
+    if taken:
+        notes.append(f"of a length that is not known, taken as {filling.length}: {', '.join(taken)}")
+    return lengths, notes
+
+
+def _get_lengths(publisher: PublisherFields) -> dict[str, int]:
+    return dict(publisher.lengths)
+
+
+def _is_set(name: str, publishers: Iterable[PublisherFields]) -> bool:
+    """Whether a publisher sets a field, what it is a part of, or something in it."""
+    path = name.removesuffix("[]")
+    return any(
+        path == each or path.startswith((f"{each}.", f"{each}[]")) or each.startswith((f"{path}.", f"{path}[]"))
+        for one in publishers
+        for each in (field.field for field in one.sets)
+    )
 
 
 def _check_size(schema: SentSchema, lengths: Mapping[str, int]) -> None:
@@ -144,8 +196,9 @@ def _read_released(package: str, name: str, ros: int) -> bytes | None:
     return "".join(f"{each.type}{each.array} {each.name}\n" for each in found.sections[0].fields).encode()
 
 
-def _read_bag(bag: Path, type_: str, schema: SentSchema) -> tuple[list[bytes], list[str]]:
-    """The first messages of a type in a bag, as ROS 1 has them on the wire, and their topics. Raises UserError."""
+def _read_bag(bag: Path, type_: str, topic: str, schema: SentSchema) -> tuple[list[bytes], list[str], float | None]:
+    """The first messages of a type in a bag, as ROS 1 has them on the wire, a note on them, and their rate in Hz.
+    topic: of this one alone. Raises UserError."""
     try:
         from rosbags.highlevel import AnyReader  # pyright: ignore[reportMissingImports]
     except ImportError:
@@ -154,12 +207,17 @@ def _read_bag(bag: Path, type_: str, schema: SentSchema) -> tuple[list[bytes], l
         raise UserError(f"--bag {bag}: no such file or folder; give a .bag, a .mcap, or the folder of a ROS 2 bag")
     package, _, name = type_.partition("/")
     found: list[bytes] = []
+    times: list[int] = []
     topics: dict[str, None] = {}
     try:
         with AnyReader([bag]) as reader:
-            chosen = [each for each in reader.connections if each.msgtype in (type_, f"{package}/msg/{name}")]
-            for connection, _, data in reader.messages(connections=chosen) if chosen else ():
+            chosen = [
+                each for each in reader.connections
+                if each.msgtype in (type_, f"{package}/msg/{name}") and topic in ("", each.topic)
+            ]  # fmt: skip
+            for connection, time, data in reader.messages(connections=chosen) if chosen else ():
                 topics[connection.topic] = None
+                times.append(time)
                 _check_fields(schema, reader.typestore.fielddefs[connection.msgtype][1], bag, type_)
                 found.append(encode(schema, reader.deserialize(data, connection.msgtype)))
                 if len(found) >= _FROM_BAG or sum(map(len, found)) > _BYTES_FROM_BAG:
@@ -169,8 +227,11 @@ def _read_bag(bag: Path, type_: str, schema: SentSchema) -> tuple[list[bytes], l
     except Exception as error:  # whatever a damaged bag makes rosbags raise
         raise UserError(f"--bag {bag}: cannot be read: {' '.join(str(error).split())[:200]}") from None
     if not found:
-        raise UserError(f"--bag {bag}: holds no message of the type {type_}; give another bag, or --length")
-    return found, list(topics)
+        on = f" on {topic}" if topic else ""
+        raise UserError(f"--bag {bag}: holds no message of the type {type_}{on}; give another bag, or --length")
+    seconds = (max(times) - min(times)) / 1e9
+    rate = (len(times) - 1) / seconds if seconds > 0 and len(topics) == 1 else None
+    return found, [f"{len(found)} messages of {', '.join(topics)} are sent in turn"], rate
 
 
 def _check_fields(schema: SentSchema, fields: Iterable[tuple[str, object]], bag: Path, type_: str) -> None:

@@ -165,7 +165,7 @@ def compute_interval(values: Sequence[float], least: float | None = None, most: 
 class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
     """A cell over its repetitions. latency: by the names of LATENCIES, in milliseconds; empty where nothing came.
     dropped and its two parts are percent of the messages published. achieved_rate: as in NetworkResult.
-    load: the highest of them."""
+    load, clock_uncertainty_ms: the highest of them."""
 
     cell: NetworkCell
     repetitions: int
@@ -177,6 +177,7 @@ class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
     dropped_subscriber: MeanInterval
     achieved_rate: MeanInterval
     load: float
+    clock_uncertainty_ms: float = 0
 
 
 def summarize(results: Iterable[NetworkResult]) -> list[CellSummary]:
@@ -200,5 +201,5 @@ def _summarize_cell(cell: NetworkCell, rows: list[NetworkResult]) -> CellSummary
     return CellSummary(
         cell=cell, repetitions=len(rows), bytes=rows[0].bytes, offered_mbit=rows[0].offered_mbit, latency=latency,
         achieved_rate=compute_interval([row.achieved_rate for row in rows]), load=max(row.load for row in rows),
-        **drops,
+        clock_uncertainty_ms=max(row.clock_uncertainty_ms for row in rows), **drops,
     )  # fmt: skip

@@ -32,8 +32,8 @@ from .run import Progress, list_left, make_header, measure_cell
 
 PARAMETER = "/rosimpact_measure/publisher"
 TWO_CLOCKS = (
-    "two machines: CLOCK_REALTIME on both; before each cell the offset is taken from the shortest of 200 round trips, "
-    "and is uncertain by half of its time on the way (clock_uncertainty_ms)"
+    "two machines: CLOCK_REALTIME on both; before and behind each cell the offset is taken from the shortest of 200 "
+    "round trips; it is uncertain by half of its time on the way and half of what it moved (clock_uncertainty_ms)"
 )
 _TOPIC = re.compile(r"/rosimpact_measure/\w{1,120}")
 _LINE = 1 << 16
@@ -61,13 +61,15 @@ class ServedMessage(NamedTuple):
 
 
 def find_address(towards: str = _DOCUMENTATION) -> str:
-    """The address that this machine has on the way to another one."""
+    """The address that this machine has on the way to another one. Raises UserError where there is no way."""
     try:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
             probe.connect((towards, 9))
             return probe.getsockname()[0]
     except OSError:
-        return "127.0.0.1"
+        raise UserError(
+            "no route leads to the other machine, so that the address of this one is not known; give it with --address"
+        ) from None
 
 
 def serve_publishers(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
+from typing import Any
 
 import msgspec
 
@@ -15,7 +16,7 @@ SYNTHETIC = "synthetic"
 TAIL = 0.5
 """Seconds for which publishers go on behind what is measured, so that the last messages find the queues as full as the
 others did."""
-OVERHEAD = 1.7
+OVERHEAD = 1.1
 """Seconds that starting and stopping the nodes of a cell takes, about."""
 _MBIT = 1_000_000
 _UNITS = {"kbit": 1_000, "mbit": _MBIT, "gbit": 1_000 * _MBIT}
@@ -112,6 +113,16 @@ def parse_link(text: str) -> int:
     if match is None or not (rate := round(float(match[1]) * _UNITS[match[2]])):
         raise UserError(f"--link {text}: not a rate; write for example 100mbit, 1gbit, or none for no limit")
     return rate
+
+
+def choose_network(loopback: bool, link: str) -> dict[str, Any]:
+    """The conditions `network` and `link` of a run on one machine. link: as written, empty for the default. Raises
+    UserError."""
+    if loopback and link:
+        raise UserError("--link: loopback has no link to limit; leave out --link or --loopback")
+    if loopback:
+        return {"network": "loopback", "link": 0}
+    return {"network": "namespaces", "link": parse_link(link or "100mbit")}
 
 
 def format_link(rate: int) -> str:

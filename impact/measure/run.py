@@ -6,6 +6,7 @@ import contextlib
 import datetime
 import os
 import platform
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Protocol
@@ -16,7 +17,7 @@ from ...edges.version import __version__
 from . import namespaces, ros1
 from .bench import Bench, LocalPublishers, LocalSubscriber, Messages, count_messages
 from .children import hold_signals
-from .clocks import ClockOffset
+from .clocks import ClockOffset, join_offsets
 from .intervals import NetworkResult, PublishReport, compute_result
 from .plan import FULL, PRUNED, SYNTHETIC, Conditions, NetworkCell, NetworkPlan
 from .results import ResultsFile, RunHeader
@@ -69,11 +70,11 @@ def run_network(plan: NetworkPlan, messages: Messages, output: Path, progress: P
     time. Raises UserError."""
     check_needs(plan.conditions)
     file = ResultsFile(output, make_header(plan.conditions, ONE_CLOCK))
+    if removed := namespaces.remove_leftovers():
+        progress(f"removed what earlier runs left behind: {', '.join(removed)}")
     left = list_left(plan, file, progress)
     if not left:
         return file
-    if removed := namespaces.remove_leftovers():
-        progress(f"removed what earlier runs left behind: {', '.join(removed)}")
     with namespaces.open_work_folder() as place, _open_until_closed() as opened:
         progress("preparing nodes")
         (place / "logs").mkdir()
@@ -160,12 +161,13 @@ def _run_cell(
 ) -> NetworkResult:  # fmt: skip
     # A topic of its own: of an earlier cell the master may still know nodes that have ended.
     topic = f"/rosimpact_measure/{_name_topic(cell, repetition, attempt)}"
-    offset = read_offset()
+    before, begun = read_offset(), time.monotonic()
     subscriber = LocalSubscriber(bench, cell, topic)
     try:
         publishers.start(cell, topic)
         report = publishers.publish()
         samples = subscriber.finish()
+        offset = join_offsets(before, read_offset(), time.monotonic() - begun)
     finally:
         with hold_signals():
             publishers.stop()

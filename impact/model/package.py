@@ -376,6 +376,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     undeclared: tuple[tuple[NameUse, tuple[str, ...], tuple[str, ...]], ...] = ()
     own_fields: tuple[FieldOfWorkspace, ...] = ()
     values: tuple[ValueUse, ...] = ()
+    # #error lines in files that are compiled, with their messages as names.
+    errors: tuple[NameUse, ...] = ()
 
 
 # What no other package is asked about but one that has to do with it, see Workspace.groups: what its code says.
@@ -385,7 +387,7 @@ _INWARD = {
     if field.name in {
         "includes", "imports", "needed_headers", "reaches", "inner", "written_inner", "syntax", "allows", "problems",
         "uses", "members", "python_api", "cpp_api", "unresolved_receivers", "undefined", "own_calls", "unsearched",
-        "unincluded", "undeclared", "settings", "testing", "python_offer", "values",
+        "unincluded", "undeclared", "settings", "testing", "python_offer", "values", "errors",
     }
 }  # fmt: skip
 
@@ -743,6 +745,7 @@ class PackageJoin:
             unresolved_receivers=self.unresolved_receivers,
             settings=tuple(self.list_settings(parameters, launches)),
             values=tuple(self.list_values(parameters, launches)),
+            errors=tuple(self.list_errors(roles)),
             distros=tuple(distros),
             requirements=tuple(requirements),
             unsearched=tuple(self.list_unsearched(roles)),
@@ -1111,6 +1114,14 @@ class PackageJoin:
                 yield NameUse(use.label, At(path, use.line, use.column), role, public, "cpp",
                               conditions + self.macros.resolve_conditions(use.conditions, targets), targets,
                               f"<{use.types}>".join(_OPEN_TYPES.split(use.label)))  # fmt: skip
+
+    def list_errors(self, roles) -> Iterator[NameUse]:
+        """The #error lines of files that targets compile."""
+        for path, (role, public, targets, conditions) in roles.items():
+            facts = self.cpp.get(path)
+            for use in facts.errors if facts is not None and targets else ():
+                around = conditions + self.macros.resolve_conditions(use.conditions, targets)
+                yield NameUse(use.text, At(path, use.line, use.column), role, public, "cpp", around, targets)
 
     def _brings_into_std(self, path: str, label: str) -> bool:
         """Whether a file, or a header of the package that it reaches, adds a namespace of the package to `std` in which

@@ -92,7 +92,9 @@ def find_terms(declared: Mapping[str, ParameterTerms], name: str) -> ParameterTe
         return declared[name]
     parts = name.split(".")
     for known, terms in declared.items():
-        pattern = known.split(".") if "*" in known else ()
+        if "*" not in known:
+            continue
+        pattern = known.split(".")
         if len(pattern) == len(parts) and all(one in ("*", part) for one, part in zip(pattern, parts, strict=True)):
             return terms
     return None

@@ -94,6 +94,8 @@ class Planner:
         # Lighter messages by the full one and what is kept.
         self._made: dict[tuple[str, tuple[str, ...]], dict[str, LightDefinition]] = {}
         self._named: set[str] = set()
+        # The edits that make a CMakeLists.txt know the new package, which several messages need.
+        self._using: dict[str, list[Edit]] = {}
         # Topics that share code with topics of another type.
         self._blocked: dict[tuple[str, str], str] = {}
 
@@ -316,16 +318,22 @@ class Planner:
             data = self.read(manifest)
             if data is not None:
                 edits += declare_dependency(data, self._new_package, "depend", manifest)
-            compiled = any(not path.endswith(".py") for path in own)
+            compiled = any(self.find_language(path) == "cpp" for path in own)
             data = self.read(build)
             if data is None or not compiled:
                 continue
-            found = use_package(build, data, old, self._new_package, ros)
-            if found is None:
-                raise EditRefused(f"{build} does not name {old}, so that a package beside it cannot be found there")
-            edits += found
+            if build not in self._using:
+                found = use_package(build, data, old, self._new_package, ros)
+                if found is None:
+                    raise EditRefused(f"{build} does not name {old}, so that a package beside it cannot be found there")
+                self._using[build] = found
+            edits += self._using[build]
             if ros == 1:
                 edits += order_after(build, data, (target.name for target in package.build.targets))
+
+    def find_language(self, path: str) -> str:
+        """`cpp` or `python`."""
+        return next((one.facts.language for one in self.code.sources if one.path == path), "cpp")
 
     def _write_new_package(self, made: Iterable[_Made]) -> dict[str, bytes]:
         """The files of the new package besides its messages, where there are any."""
@@ -459,13 +467,9 @@ class _Work:
             data = self.planner.read(path)
             if data is None:
                 raise EditRefused(f"{path} cannot be read")
-            python = self.find_language(path) == "python"
+            python = self.planner.find_language(path) == "python"
             self.editors[path] = PythonEditor(path, data) if python else CppEditor(path, data, self.ros)
         return self.editors[path]
-
-    def find_language(self, path: str) -> str:
-        """`cpp` or `python`."""
-        return next((one.facts.language for one in self.code.sources if one.path == path), "cpp")
 
     def _get_cpp(self, path: str) -> CppEditor:
         editor = self._get_editor(path)

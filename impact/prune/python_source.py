@@ -9,6 +9,8 @@ from codecs import BOM_UTF8
 from ..rules.fix_actions import Edit
 from .cpp_source import EditRefused
 
+_CODING = re.compile(rb"[ \t\f]*#.*?coding[:=][ \t]*[-\w.]+")
+
 
 class PythonEditor:
     """The edits of one Python file. data: its bytes. Raises EditRefused where Python 3 does not read them."""
@@ -106,8 +108,11 @@ class PythonEditor:
             is_text = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and not last
             if isinstance(node, (ast.Import, ast.ImportFrom)) or is_text:
                 last = node.end_lineno or 0
-        if not last and self.data.startswith(b"#!"):
-            last = 1
+        if not last:
+            # Python looks for the coding in the first two lines, the system for the interpreter in the first.
+            lines = self.data.removeprefix(BOM_UTF8).split(b"\n")[:2]
+            last = max((place for place, line in enumerate(lines, 1) if _CODING.match(line)), default=0)
+            last = last or int(lines[0].startswith(b"#!"))
         return min(self._starts[last], len(self.data))
 
 

@@ -5,22 +5,20 @@ from __future__ import annotations
 import hashlib
 import os
 import shutil
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import msgspec
 
-from ...edges.console import UserError, escape
+from ...edges.console import UserError
 from ...edges.documents import DocumentError, load_json
 from ...edges.files import read_file, write_file
-from ..analysis.fields import KnownMessages, close
+from ..analysis.fields import KnownMessages, open_fields
 from ..analysis.fix import make_unified_diff
-from ..analysis.session import load_settings, open_tree
-from ..facts.store import Store
 from ..model.fields.report import FieldReport
 from ..model.fields.topics import TopicReader, extract_uses
-from ..model.flow.workspace import get_flow, link_for_flow, make_graph
+from ..model.flow.workspace import get_flow
 from ..tree.paths import Tree
 from .planner import Planner, PrunePlan
 
@@ -31,10 +29,13 @@ _MOST_BYTES = 100_000_000
 
 
 class Prepared(NamedTuple):
-    """A plan with the bytes of the files that it changes, as they are now."""
+    """A plan with the bytes of the files that it changes, as they are now. report: the fields that it rests on;
+    ros: the generation of the workspace."""
 
     plan: PrunePlan
     originals: dict[str, bytes]
+    report: FieldReport
+    ros: int
 
 
 class _Change(msgspec.Struct, frozen=True):
@@ -47,31 +48,20 @@ class _Change(msgspec.Struct, frozen=True):
 
 
 def prepare(
-    path: Path, *, topics: Sequence[str] = (), closed: Sequence[str] = (), config: Path | None = None,
-    length: int = 10, jobs: int | None = None, progress: Callable[[int, int], None] | None = None,
-    follow_links: bool = False,
+    path: Path, *, topics: Sequence[str] = (), length: int = 10, jobs: int | None = None, **given: Any
 ) -> Prepared:  # fmt: skip
-    """What pruning the workspace at a path would change. topics: these alone; closed: as for collect_fields(). Raises
-    UserError with a text for the user."""
-    tree = open_tree(path, "", follow_links=follow_links)
-    settings = load_settings(path, tree, config, follow_links=follow_links)
-    known = frozenset((*closed, *settings.closed_topics))
-    with Store() as store:
-        workspace = link_for_flow(tree, store, jobs, progress)
-        graph = make_graph(workspace, store, jobs=jobs or 1)
-        reader = TopicReader(workspace, get_flow(workspace).code, graph, extract_uses(workspace, jobs))
-        report = reader.report()
-        names = {one.topic for one in report.topics} | {topic for topic, _ in report.unknown}
-        for name in (*topics, *closed):
-            if name not in names:
-                raise UserError(f"{escape(name)}: no such topic; `rosimpact fields` lists those there are")
-        rows = tuple(close(one) if one.topic in known else one for one in report.topics)
+    """What pruning the workspace at a path would change. topics: these alone. length: of strings and arrays, for sizes.
+    The others as for open_fields(). Raises UserError with a text for the user."""
+    with open_fields(path, jobs=jobs, **given) as opened:
+        workspace, tree = opened.workspace, opened.tree
+        reader = TopicReader(workspace, get_flow(workspace).code, opened.graph, extract_uses(workspace, jobs))
+        report = opened.close_topics(reader.report(), topics)
         planner = Planner(
-            workspace, reader, FieldReport(rows, report.unknown), known, lambda each: _read(tree, each), length,
+            workspace, reader, report, opened.select_closed(report), lambda each: _read(tree, each), length,
             KnownMessages(workspace, tree).find,
         )  # fmt: skip
         plan = planner.plan(topics)
-    return Prepared(plan, {each: _read(tree, each) or b"" for each in plan.changed})
+    return Prepared(plan, {each: _read(tree, each) or b"" for each in plan.changed}, report, workspace.ros)
 
 
 def _read(tree: Tree, path: str) -> bytes | None:
@@ -177,5 +167,3 @@ def write_copy(root: Path, target: Path, prepared: Prepared) -> None:
 
 def _digest(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
-
-

@@ -32,6 +32,8 @@ def render_fields_text(answer: FieldAnswer, everything: bool = False, style: Sty
             text = f"{size.unread:,} B of {size.full:,} B in each message"
             lines += lay_out([LinePart("saves", "good"), LinePart(text)], style, 2, 6)
         lines.append("")
+    for topic in report.unnamed:
+        lines += [*_render_topic(topic, everything, style), ""]
     for topic, type_ in report.unknown if everything else ():
         lines.append(f"{topic}  {type_}: its fields are not known")
     lines += list(lay_out([LinePart(summarize_fields(report))], style, 0, 2))
@@ -40,7 +42,8 @@ def render_fields_text(answer: FieldAnswer, everything: bool = False, style: Sty
 
 def summarize_fields(report: FieldReport) -> str:
     """What was found, on one line."""
-    callbacks = {(one.path, one.line): one for topic in report.topics for one in topic.subscribers}
+    rows = (*report.topics, *report.unnamed)
+    callbacks = {(one.path, one.line): one for topic in rows for one in topic.subscribers}
     whole = sum(any(not escape.field for escape in one.escapes) for one in callbacks.values())
     unread = sum(len(topic.unread) for topic in report.topics)
     lighter = sum(bool(topic.unread) for topic in report.topics)
@@ -54,12 +57,13 @@ def summarize_fields(report: FieldReport) -> str:
 
 def _render_topic(topic: TopicFields, everything: bool, style: Style) -> Iterator[str]:
     count = format_count(len(topic.fields), "field")
-    yield from lay_out([LinePart(topic.topic, "bold"), LinePart(topic.type), LinePart(count, "dim")], style, 0, 4)
+    name = LinePart(topic.topic, "bold") if topic.topic else LinePart("(a name that is not known)", "dim")
+    yield from lay_out([name, LinePart(topic.type), LinePart(count, "dim")], style, 0, 4)
     for subscriber in _drop_equal(topic.subscribers):
         yield from _render_subscriber(subscriber, everything, style)
     for publisher in _drop_equal(topic.publishers):
         yield from _render_publisher(publisher, everything, style)
-    for why in topic.open if everything else topic.open[:2]:
+    for why in () if not topic.topic else topic.open if everything else topic.open[:2]:
         yield from lay_out([LinePart("may be read elsewhere:", "dim"), LinePart(why)], style, 2, 6)
     if not everything and len(topic.open) > 2:
         yield f"  and {format_count(len(topic.open) - 2, 'further reason')}; --all shows them"

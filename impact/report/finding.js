@@ -24,15 +24,18 @@ function whereOf(finding) {
   return [place, block];
 }
 
-// Findings of one cause together, which say the same of one package at several places.
+// Findings of one cause together, which say the same of one package at several places. Errors are apart; of what is a
+// warning at its first place and a note at the others, the warning leads.
 function alikeOf(findings) {
   const groups = new Map();
   for (const finding of findings) {
-    const key = [RULE, SEVERITY, PACKAGE, MESSAGE, HELP, TARGETS, NEW].map((index) => finding[index]).join("\n");
+    const said = [RULE, PACKAGE, MESSAGE, HELP, TARGETS, NEW].map((index) => finding[index]).join("\n");
+    const key = `${finding[SEVERITY] === "error"}\n${said}`;
     if (groups.has(key)) groups.get(key).push(finding);
     else groups.set(key, [finding]);
   }
-  return [...groups.values()];
+  const rank = (finding) => Number(finding[SEVERITY] === "note");
+  return [...groups.values()].map((group) => group.sort((a, b) => rank(a) - rank(b)));
 }
 
 // The places behind the first of a cause, folded; they are made when they are asked for.

@@ -13,6 +13,7 @@ from ..analysis.report import (
     group_alike,
     list_new,
     put_different_first,
+    select_causes,
 )
 from ..rules.rule import Finding
 from .markdown_text import _LONGEST, escape_markdown, quote
@@ -28,8 +29,8 @@ def render(report: Report) -> str:
     head = [f"**rosimpact** {format_verdict(report)}", ""]
     tail = ["", f"<sub>{_render_tail(report, findings)}</sub>"]
     order = {"error": 0, "warning": 1}
-    reported = [finding for finding in put_different_first(findings) if finding.severity in order]
-    reported.sort(key=lambda finding: order[finding.severity])
+    reported = select_causes(put_different_first(findings), order)
+    reported.sort(key=lambda finding: order.get(finding.severity, len(order)))
     if report.impact is not None and report.impact.effects:
         from .impact import summarize
 
@@ -100,7 +101,7 @@ def _shorten(text: str) -> str:
 
 def _render_tail(report: Report, findings: list[Finding]) -> str:
     parts = [format_coverage(report.coverage)]
-    notes = format_causes(finding for finding in findings if finding.severity == "note")
+    notes = format_causes(select_causes(findings, ("note",)))
     parts += [notes] if notes else []
     parts += [f"new against {quote(report.base)}"] if report.base else []
     parts += [f"{len(report.suppressed):,} suppressed"] if report.suppressed else []

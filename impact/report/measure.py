@@ -28,21 +28,21 @@ def render_text(header: RunHeader, summaries: Sequence[CellSummary]) -> str:
                   for place, (cell, width) in enumerate(zip(row, widths, strict=True))).rstrip()
         for row in rows
     ]  # fmt: skip
-    return "\n".join([*lines, "", *_describe_conditions(header, summaries)])
+    return "\n".join([*lines, "", *describe_conditions(header, summaries)])
 
 
 def _render_row(header: RunHeader, summary: CellSummary) -> tuple[str, ...]:
     cell = summary.cell
     size = f"{cell.fields} fields" if header.conditions.message == SYNTHETIC else header.conditions.message
-    latency = [_format_interval(summary.latency.get(name), 2) for name in ("mean", "p50", "p95", "p99")]
+    latency = [format_interval(summary.latency.get(name), 2) for name in ("mean", "p50", "p95", "p99")]
     drops = [summary.dropped, summary.dropped_publisher, summary.dropped_subscriber]
     return (
         f"{size}, {cell.variant}", f"{summary.bytes:,}", str(cell.publishers), f"{cell.rate:g}",
-        f"{summary.offered_mbit:.1f}", *latency, *(_format_interval(each, 1) for each in drops),
+        f"{summary.offered_mbit:.1f}", *latency, *(format_interval(each, 1) for each in drops),
     )  # fmt: skip
 
 
-def _format_interval(value: MeanInterval | None, digits: int) -> str:
+def format_interval(value: MeanInterval | None, digits: int) -> str:
     """`8.41 ±0.02`, by the larger side of the interval; `-` where nothing was delivered."""
     if value is None:
         return "-"
@@ -52,7 +52,9 @@ def _format_interval(value: MeanInterval | None, digits: int) -> str:
     return f"{value.mean:.{digits}f} ±{half:.{digits}f}"
 
 
-def _describe_conditions(header: RunHeader, summaries: Iterable[CellSummary]) -> list[str]:
+def describe_conditions(header: RunHeader, summaries: Iterable[CellSummary]) -> list[str]:
+    """Under which conditions cells were measured, by which clock, and what was beside them."""
+    summaries = list(summaries)
     conditions = header.conditions
     link = {"namespaces": f"three network namespaces, links of {format_link(conditions.link)}",
             "loopback": "loopback, no limit", "machines": "two machines"}[conditions.network]  # fmt: skip
@@ -63,6 +65,9 @@ def _describe_conditions(header: RunHeader, summaries: Iterable[CellSummary]) ->
         f"{conditions.warm_up:g} s of warm-up, repetitions: {times}; ± is the 95 % interval of Student's t over them",
         f"clock: {header.clock}",
     ]
+    unsure = max((each.clock_uncertainty_ms for each in summaries), default=0)
+    if unsure:
+        lines.append(f"latencies are known to within ±{unsure:.2f} ms, as the offset of both clocks is")
     load, cores = max((each.load for each in summaries), default=0), header.machine.get("cores", "0")
     if load > float(cores) > 0:
         lines.append(f"other work ran beside it: the load average reached {load:.0f} on {cores} cores")

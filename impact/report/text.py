@@ -16,6 +16,7 @@ from ..analysis.report import (
     list_new,
     locate_in_excerpt,
     measure,
+    select_causes,
 )
 from ..rules.rule import Finding
 from . import evidence
@@ -28,7 +29,7 @@ _PLACES = 5
 def render(report: Report, style: Style = PLAIN) -> str:
     """The report as text that ends in a line end."""
     lines = _render_targets(report, style)
-    shown = [finding for finding in list_new(report) if finding.severity in style.severities]
+    shown = select_causes(list_new(report), style.severities)
     lines += _render_packages(report, shown, style)
     if report.impact is not None and report.impact.effects:
         from .impact import render_short
@@ -208,7 +209,7 @@ def _format_summary(report: Report, style: Style) -> str:
     found = [
         paint(style, severity, causes) + ("" if severity in style.severities else f" (shown with --{severity}s)")
         for severity in count_by_severity(())
-        if (causes := format_causes(finding for finding in findings if finding.severity == severity))
+        if (causes := format_causes(select_causes(findings, (severity,))))
     ]
     if report.failure:
         text = paint(style, "error", "failed") + f": {escape(report.failure)}"

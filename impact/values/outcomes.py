@@ -8,7 +8,7 @@ these.
 from __future__ import annotations
 
 import enum
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -133,10 +133,19 @@ class Bounds:
     memory: int = 2_000_000_000
 
 
+class UnknownFunction(NamedTuple):
+    """A float of some bits that is calculated from terms."""
+
+    compute: Callable[..., float]
+    arguments: tuple[z3.ExprRef | int | float, ...]
+    bits: int
+
+
 @dataclass
 class Exploration:
     """All that was found out about one callback. left: ways that were begun and not ended (time or number of paths);
-    where it is not 0, nothing is surely ignored."""
+    where it is not 0, nothing is surely ignored. functions: variables that stand for what z3 does not know (the sine of
+    a term), with what calculates them."""
 
     inputs: dict[str, SymbolicInput] = field(default_factory=dict)
     paths: list[CallbackPath] = field(default_factory=list)
@@ -144,6 +153,7 @@ class Exploration:
     left: int = 0
     instructions: int = 0
     seconds: float = 0.0
+    functions: dict[str, UnknownFunction] = field(default_factory=dict)
 
 
 class Witness(NamedTuple):

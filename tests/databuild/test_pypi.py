@@ -3,7 +3,15 @@
 import zipfile
 
 import pytest
-from rosimpact.databuild.pypi import OfferedNames, find_losses, group_losses, read_versions, read_wheel
+from rosimpact.databuild.pypi import (
+    MovedNames,
+    OfferedNames,
+    find_losses,
+    group_losses,
+    group_moved,
+    read_versions,
+    read_wheel,
+)
 
 
 def make_release(folder, version, files):
@@ -96,11 +104,38 @@ def test_a_loss_is_told_from_the_version_on_that_surely_lacks_it(tmp_path):
     assert list_losses(tmp_path, *versions[:2], {INIT: "import os"}) == {"arm.move": ("1.2", "1.1")}
     (loss,) = find_losses([OfferedNames(make_release(tmp_path, f"1.{n}", v)) for n, v in enumerate(versions)])
     # It may not have been deprecated at last.
-    assert loss == ("arm.move", "1.2", "1.3", "")
+    assert loss == ("arm.move", "1.1", "1.3", "")
     (group,) = group_losses("arm", "arm", [loss])
     assert {key: group[key] for key in ("last_in", "removed_in", "names")} == {
-        "last_in": "1.2", "removed_in": "1.3", "names": {"arm.move": ""}
+        "last_in": "1.1", "removed_in": "1.3", "names": {"arm.move": ""}
     }  # fmt: skip
+
+
+def test_versions_of_which_nothing_is_known_hide_no_earlier_loss(tmp_path):
+    there, gone = {INIT: "def move(): ..."}, {INIT: "import os"}
+    unknown = {INIT: "def __getattr__(name): return load(name)"}
+
+    def tell(*versions):
+        read = [OfferedNames(make_release(tmp_path, f"1.{n}", files)) for n, files in enumerate(versions)]
+        return [(loss.last_in, loss.removed_in) for loss in find_losses(read)]
+
+    assert tell(there, gone, gone, unknown, gone) == [("1.0", "1.1")]
+    # A version alone is not enough, and the newest has to lack it.
+    assert tell(there, gone, unknown, gone) == [("1.0", "1.3")]
+    assert tell(there, gone, gone, unknown) == []
+    assert tell(there, gone, gone, unknown, there) == []
+
+
+def test_names_that_a_module_lost_before_all_wheels(tmp_path):
+    files = {
+        "arm/gui.pyi": "class Icon: ...\nclass Kept: ...",
+        "arm/widgets.pyi": "class Button: ...\nclass Kept: ...\nOLD_SIGNAL = 1\ndef make(): ...",
+        "arm/other.pyi": "class Table: ...",
+    }
+    release = OfferedNames(make_release(tmp_path, "5.1", files))
+    group = group_moved("arm5", MovedNames("arm", "arm.gui", ("arm.widgets",), "5.0", "its guide"), release)
+    assert (group["package"], group["removed_in"], group["source"]) == ("arm5", "5.0", "its guide")
+    assert group["names"] == {"arm.gui.Button": "arm.widgets.Button"}
 
 
 def test_versions_between_are_read_where_something_went(tmp_path):

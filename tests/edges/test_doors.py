@@ -11,6 +11,8 @@ _MEASURED = "files in the temporary folder of a measurement; nodes run without r
 _SHIPPED = "data that is shipped beside the module"
 DOORS = {
     "open": {
+        "impact/values/harness/replay.py": "the errors of a harness, into a temporary folder",
+        "impact/values/ir/executor.py": "how much memory this process uses",
         "edges/files.py": "the door",
         "edges/processes.py": "/proc/self/statm",
         "impact/targets/machine/loader.py": "a descriptor of open_regular()",
@@ -59,10 +61,14 @@ DOORS = {
         "impact/targets/capture.py": "dpkg-query and the like, without words of a workspace",
         "impact/measure/children.py": "ip, tc, cmake and ROS's generators, which get fields and types alone",
         "impact/prune/verify.py": "the build of the workspace that the user asked for",
+        "impact/values/harness/toolchain.py": "the compiler, on a harness",
+        "impact/values/harness/replay.py": "whether the network can be cut off",
     },
     "subprocess.Popen": {
         "impact/measure/children.py": "measuring nodes and their master",
         "impact/prune/verify.py": "the nodes of the workspace that the user asked for, and their master",
+        "impact/values/harness/replay.py": "the harness of a callback that the user asked to run",
+        "impact/values/sandbox.py": "a callback in Python that the user asked to run",
     },
     "pickle.loads": {"edges/processes.py": "what our own processes send each other"},
     "marshal.loads": {"classifier/features.py": "a nameless temporary file of one process"},
@@ -75,6 +81,7 @@ DOORS = {
         "classifier/model.py": "parts of a model whose size was looked at",
         "classifier/triage.py": "one line of a limited length",
         "corpus/figures.py": "settings that `study run` gives",
+        "impact/values/python/stand_in.py": "what our own process sends to a replay",
     },
 }  # fmt: skip
 

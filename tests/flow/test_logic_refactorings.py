@@ -246,6 +246,149 @@ CPP_CASES = [
         + say("fresh_ = true;"),
         [("trigger changed", "on loop, was on messages of `in`; only when `fresh_`")],
     ),
+    # What a function gives that returns more than once, and what branches assign to a variable.
+    (
+        "early returns become a function",
+        say("if (!ready_) return; if (level_ <= 3) return; pub_.publish(msg);"),
+        'bool can() { if (!ready_) { ROS_WARN("no"); return false; } if (level_ <= 3) return false; return true; }\n'
+        + say("if (can()) pub_.publish(msg);"),
+        [],
+    ),
+    (
+        "early returns become a function that asks for less",
+        say("if (!ready_) return; if (level_ <= 3) return; pub_.publish(msg);"),
+        "bool can() { if (!ready_) { return false; } return level_ > 2; }\n" + say("if (can()) pub_.publish(msg);"),
+        [("widened", "")],
+    ),
+    (
+        "nothing is returned instead of something",
+        say("if (!ready_) return; pub_.publish(msg);"),
+        "std::optional<Item> make() { if (!ready_) return std::nullopt; return Item(); }\n"
+        + say("auto made = make(); if (!made) return; pub_.publish(msg);"),
+        [],
+    ),
+    (
+        "a pointer that is returned says no condition",
+        say("if (ready_) pub_.publish(msg);"),
+        "Item* find() { if (!ready_) return nullptr; return first_; }\n" + say("if (find()) pub_.publish(msg);"),
+        [("changed", "`find()` was `ready_`")],
+    ),
+    (
+        "a variable that branches assign",
+        say("if (level_ == 1 ? ready_ : loud_) pub_.publish(msg);"),
+        say("bool go;\n if (level_ == 1) { go = ready_; } else { go = loud_; }\n if (go) pub_.publish(msg);"),
+        [],
+    ),
+    (
+        "a variable that conditions take back",
+        say("if (ready_ && !loud_) pub_.publish(msg);"),
+        say("bool go = ready_;\n if (loud_) go = false;\n if (go) pub_.publish(msg);"),
+        [],
+    ),
+    (
+        "a variable that a loop assigns is what it is",
+        say("bool go = ready_;\n for (auto& item : items_) go = item.loud;\n if (go) pub_.publish(msg);"),
+        say("if (ready_) pub_.publish(msg);"),
+        [("changed", "`ready_` was `go`")],
+    ),
+    # What is given for a parameter.
+    (
+        "a condition that is handed on",
+        say("if (ready_) pub_.publish(msg);"),
+        "void send(bool go) { if (go) pub_.publish(last_); }\n" + say("send(ready_);"),
+        [],
+    ),
+    (
+        "a parameter that is always true",
+        say("pub_.publish(msg);"),
+        "void send(bool go = true) { if (go) pub_.publish(last_); }\n" + say("send();"),
+        [],
+    ),
+    (
+        "a flag that goes round a condition",
+        "void send() { if (ready_) pub_.publish(last_); }\n" + say("send();"),
+        "void send(bool force) { if (force || ready_) pub_.publish(last_); }\n" + say("send(true);"),
+        [("widened", "`force || ready_` was `ready_`")],
+    ),
+    (
+        "two calls that give something else",
+        "void send() { pub_.publish(last_); }\n" + say("if (ready_) send(); if (loud_) send();"),
+        "void send(bool go) { if (go) pub_.publish(last_); }\n" + say("send(ready_); send(loud_);"),
+        [],
+    ),
+    (
+        "a call less of two that give something else",
+        "void send(bool go) { if (go) pub_.publish(last_); }\n" + say("send(ready_); send(loud_);"),
+        "void send(bool go) { if (go) pub_.publish(last_); }\n" + say("send(ready_);"),
+        [("tightened", "")],
+    ),
+    (
+        "a call whose argument a guard shuts out",
+        "void set(int mode) { if (mode == RUN) pub_.publish(last_); }\n  enum Mode { OFF, RUN };\n"
+        "  void other() { set(OFF); }\n" + say("set(RUN);"),
+        "void set(int mode) { if (mode == RUN) pub_.publish(last_); }\n  enum Mode { OFF, RUN };\n"
+        "  void other() { halt(); }\n" + say("set(RUN);"),
+        [],
+    ),
+    (
+        "a parameter of a callback that is called otherwise",
+        say("if (msg.data.empty()) return; pub_.publish(msg);"),
+        "void onInput(const std_msgs::String& in) { if (in.data.empty()) return; pub_.publish(in); }",
+        [],
+    ),
+    # Lambdas with a name.
+    (
+        "a lambda that is called under a condition",
+        say("if (ready_) pub_.publish(msg);"),
+        say("auto send = [&]() { pub_.publish(msg); }; if (ready_) send();"),
+        [],
+    ),
+    (
+        "a condition that is a lambda",
+        say("if (ready_) pub_.publish(msg);"),
+        say("auto can = [this]() { return ready_; }; if (can()) pub_.publish(msg);"),
+        [],
+    ),
+    # Names for numbers and objects, and other words for one thing.
+    ("an object with a short name", say("if (state_.ready_) pub_.publish(msg);"),
+     say("const auto& state = state_; if (state.ready_) pub_.publish(msg);"), []),
+    (
+        "a number with a name",
+        say("if (level_ > 3) pub_.publish(msg);"),
+        "static constexpr int kLevel = 3;\n" + say("if (level_ > kLevel) pub_.publish(msg);"),
+        [],
+    ),
+    (
+        "a constant that is larger now",
+        "static constexpr int kLevel = 3;\n" + say("if (level_ > kLevel) pub_.publish(msg);"),
+        "static constexpr int kLevel = 5;\n" + say("if (level_ > kLevel) pub_.publish(msg);"),
+        [("tightened", "`level_ > 5` was `level_ > 3`")],
+    ),
+    (
+        "a number with a name that may change",
+        say("if (level_ > 3) pub_.publish(msg);"),
+        "int kLevel = 3;\n" + say("if (level_ > kLevel) pub_.publish(msg);"),
+        [("changed", "`level_ > kLevel` was `level_ > 3`")],
+    ),
+    ("a key that is looked for", say("if (known_.find(msg.data) != known_.end()) pub_.publish(msg);"),
+     say("if (known_.count(msg.data)) pub_.publish(msg);"), []),
+    ("an atomic", say("if (ready_) pub_.publish(msg);"), say("if (ready_.load()) pub_.publish(msg);"), []),
+    ("a getter for a member", say("if (state_.idle_) pub_.publish(msg);"),
+     say("if (state_.idle()) pub_.publish(msg);"), []),
+    ("a constant of another class", say("if (level_ == Old::BUSY) pub_.publish(msg);"),
+     say("if (level_ == New::BUSY) pub_.publish(msg);"), []),
+    ("another constant of it", say("if (level_ == Old::BUSY) pub_.publish(msg);"),
+     say("if (level_ == Old::IDLE) pub_.publish(msg);"), [("changed", "`level_ == Old::IDLE` was `level_ == Old")]),
+    ("what one method says with other words", say('if (get("a").ok()) pub_.publish(msg);'),
+     say('bool fine = get("b").ok(); if (fine) pub_.publish(msg);'), [("changed", "")]),
+    (
+        "what never ran",
+        say("return; pub_.publish(msg);"),
+        say("pub_.publish(msg);"),
+        [("widened", "never ran before: it stands after return")],
+    ),
+    ("code that is put aside", say("pub_.publish(msg);"), say("\n#if 0\n pub_.publish(msg);\n#endif\n"),
+     [("tightened", "never runs")]),
 ]
 
 
@@ -297,6 +440,51 @@ PYTHON_CASES = [
         "        pass\n\nclass Sender:\n    def __init__(self, pub):\n        if loaded:\n            pub.publish(1)",
         "        sender = Sender()\n        if msg.data:\n            sender.begin(self.pub)\n\nclass Sender:\n"
         "    def begin(self, pub):\n        if loaded:\n            pub.publish(1)",
+        [],
+    ),
+    (
+        "a property",
+        "        if self.ready and self.level > 3:\n            self.pub.publish(msg)",
+        "        if self.can:\n            self.pub.publish(msg)\n\n    @property\n    def can(self):\n"
+        "        return self.ready and self.level > 3",
+        [],
+    ),
+    (
+        "early returns become a method",
+        "        if not self.ready:\n            return\n        if self.level > 3:\n            self.pub.publish(msg)",
+        "        if self.can():\n            self.pub.publish(msg)\n\n    def can(self):\n        if not self.ready:\n"
+        "            return False\n        return self.level > 3",
+        [],
+    ),
+    (
+        "a parameter with a name",
+        "        if rospy.get_param('~a'):\n            self.pub.publish(msg)",
+        "        asked = rospy.get_param('~a')\n        if asked:\n            self.pub.publish(msg)",
+        [],
+    ),
+    (
+        "another parameter with a name",
+        "        if self.get('a').value:\n            self.pub.publish(msg)",
+        "        asked = self.get('b').value\n        if asked:\n            self.pub.publish(msg)",
+        [("changed", "")],
+    ),
+    (
+        "a condition that is handed on",
+        "        if self.ready:\n            self.pub.publish(msg)",
+        "        self.send(msg, go=self.ready)\n\n    def send(self, msg, go=True):\n        if go:\n"
+        "            self.pub.publish(msg)",
+        [],
+    ),
+    (
+        "a lambda that is called under a condition",
+        "        if self.ready:\n            self.pub.publish(msg)",
+        "        send = lambda: self.pub.publish(msg)\n        if self.ready:\n            send()",
+        [],
+    ),
+    (
+        "keys of a dictionary",
+        "        if msg.data in self.known.keys():\n            self.pub.publish(msg)",
+        "        if self.known.has_key(msg.data):\n            self.pub.publish(msg)",
         [],
     ),
 ]
@@ -428,3 +616,31 @@ def test_a_method_of_the_codes_own_is_no_publisher() -> None:
     assert compare(twice, {}) == []
     alone = {"serial.py": SERIAL.replace("ARGUMENTS", "msg"), "delegate.py": DELEGATE}
     assert [kind for kind, _ in compare(alone, {})] == ["gone"]
+
+
+PACED = """
+#include "rclcpp/rclcpp.hpp"
+constexpr auto kPause = 100ms;
+class Beacon : public rclcpp::Node {
+public:
+  Beacon() : Node("beacon") {
+    pub_ = create_publisher<std_msgs::msg::String>("out", 10);
+    timer_ = create_wall_timer(PERIOD, [this]() { pub_->publish(last_); });
+  }
+  rclcpp::Publisher<std_msgs::msg::String>::SharedPtr pub_;
+  rclcpp::TimerBase::SharedPtr timer_;
+};
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("100ms", "std::chrono::milliseconds(100)", []),
+        ("0.1s", "kPause", []),
+        ("100ms", "kLonger", [("trigger changed", "timer `kLonger`, was `100ms`")]),
+        ("200ms", "kPause", [("trigger changed", "timer `100ms`, was `200ms`")]),
+    ],
+)
+def test_a_period_is_what_it_comes_to(old: str, new: str, said: list[tuple[str, str]]) -> None:
+    assert compare({"b.cpp": PACED.replace("PERIOD", old)}, {"b.cpp": PACED.replace("PERIOD", new)}) == said

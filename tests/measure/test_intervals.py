@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rosimpact.edges.console import UserError
-from rosimpact.impact.measure.clocks import RoundTrip, estimate_offset, take_trips
+from rosimpact.impact.measure.clocks import ClockOffset, RoundTrip, estimate_offset, join_offsets, take_trips
 from rosimpact.impact.measure.intervals import (
     MeanInterval,
     PublishReport,
@@ -141,3 +141,22 @@ def test_the_true_offset_is_within_the_uncertainty(true, ways):
 
     found = take_trips(lambda: now[0], ask, len(ways))
     assert abs(found.nanoseconds - true) <= found.uncertainty + 1
+
+
+@pytest.mark.parametrize(
+    ("after", "seconds", "joined"),
+    [
+        (ClockOffset(5 * MS, 1 * MS), 10, ClockOffset(5 * MS, 1 * MS)),
+        (ClockOffset(7 * MS, 2 * MS), 10, ClockOffset(6 * MS, 3 * MS)),  # 200 µs a second: slewed
+        (ClockOffset(13 * MS, 1 * MS), 10, None),  # 8 ms in 10 s: no clock is slewed so fast
+        (ClockOffset(13 * MS, 1 * MS), 20, ClockOffset(9 * MS, 5 * MS)),
+        (ClockOffset(-3_600_000 * MS, 1 * MS), 10, None),
+    ],
+)
+def test_clocks_that_move_against_each_other(after, seconds, joined):
+    before = ClockOffset(5 * MS, 1 * MS)
+    if joined is None:
+        with pytest.raises(UserError, match="let both be synchronised"):
+            join_offsets(before, after, seconds)
+    else:
+        assert join_offsets(before, after, seconds) == joined

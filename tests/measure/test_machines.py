@@ -3,10 +3,11 @@
 import json
 import socket
 import threading
+import time
 
 import pytest
 from rosimpact.impact.measure import machines
-from rosimpact.impact.measure.plan import Conditions, NetworkCell
+from rosimpact.impact.measure.plan import Conditions, NetworkCell, NetworkPlan
 
 HELLO = {"do": "hello", "conditions": {"network": "machines", "link": 0}, "fields": [25]}
 CELL = {"publishers": 1, "fields": 25, "rate": 50, "variant": "full"}
@@ -121,3 +122,49 @@ def test_nobody_answers_at_the_address():
 def test_a_question_is_what_the_other_side_reads():
     question = machines.Question("hello", Conditions(), (25,))
     assert machines.msgspec.json.decode(machines.msgspec.json.encode(question), type=machines.Question) == question
+
+
+def test_no_route_leads_to_the_other_machine(monkeypatch):
+    class Probe(socket.socket):
+        def connect(self, address):
+            raise OSError("Network is unreachable")
+
+    monkeypatch.setattr(machines.socket, "socket", Probe)
+    with pytest.raises(machines.UserError, match="give it with --address"):
+        machines.find_address()
+
+
+AHEAD = 3_600_000_000_000
+
+
+@pytest.mark.parametrize("ahead", [0, AHEAD, -AHEAD])
+def test_the_offset_of_two_clocks_over_a_real_connection(tmp_path, monkeypatch, ahead):
+    """Both sides on this machine; the subscriber's clock is an hour ahead, or behind."""
+
+    class Bench:
+        def __init__(self, conditions, messages, *_, **__):
+            self.messages = messages
+
+        def read_clock(self):
+            return time.time_ns()
+
+    monkeypatch.setattr(machines, "Bench", Bench)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+
+        def serve():
+            connection = server.accept()[0]
+            with connection:
+                machines._Session(connection, "roscpp", "http://x", "127.0.0.1", tmp_path, None).serve()
+
+        worker = threading.Thread(target=serve)
+        worker.start()
+        where = f"127.0.0.1:{server.getsockname()[1]}"
+        publishers = machines.RemotePublishers(where, lambda: time.time_ns() + ahead)
+        publishers.prepare(NetworkPlan(conditions=Conditions(network="machines", link=0), fields=(25,)))
+        offset = publishers.read_offset()
+        publishers.close()
+        worker.join(10)
+    assert not worker.is_alive()
+    # The round trip bounds the error, whatever this machine does beside it.
+    assert abs(offset.nanoseconds - ahead) <= offset.uncertainty
+    assert offset.uncertainty < 1e9

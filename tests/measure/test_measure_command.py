@@ -121,7 +121,8 @@ def test_a_real_message_of_a_workspace(tmp_path):
     )
     (package / "msg/Sweep.msg").write_text("std_msgs/Header header\nfloat32[] ranges\nfloat32[] intensities\n")
     lengths = {"ranges": 10, "intensities": 10, "header.frame_id": 4}
-    made, notes = contents.make_real_messages("own_msgs/Sweep", ["ranges", "header.stamp"], tmp_path, lengths, None, 1)
+    filling = contents.MessageFilling(lengths)
+    made, notes, _ = contents.make_real_messages("own_msgs/Sweep", ["ranges", "header.stamp"], tmp_path, filling, 1)
     # Header: 4 + 8 + 4 + 4; each array: 4 + 40; the sample's head: 20.
     assert made[0, "full"].bytes == 20 + 20 + 44 + 44
     assert made[0, "pruned"].bytes == 20 + 8 + 44
@@ -132,7 +133,8 @@ def test_a_real_message_of_a_workspace(tmp_path):
 @pytest.mark.parametrize(("ros", "seq"), [(1, True), (2, False)])
 def test_released_definitions_are_of_the_nodes_generation(tmp_path, ros, seq):
     assert load_shipped().find_history("std_msgs", ros) is not None
-    made, _ = contents.make_real_messages("std_msgs/Header", [], tmp_path, {"frame_id": 1}, None, ros)
+    filling = contents.MessageFilling({"frame_id": 1})
+    made = contents.make_real_messages("std_msgs/Header", [], tmp_path, filling, ros).messages
     names = [field.name for field in made[0, "full"].schema.list_fields()]
     assert ("seq" in names) is seq
     assert (0, "pruned") not in made

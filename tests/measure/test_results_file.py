@@ -39,7 +39,7 @@ def test_a_second_run_continues(path):
     left = list_left(plan, ResultsFile(path, HEADER), told.append)
     cells = [(repetition, cell.variant) for repetition, cell in left]
     assert cells == [(0, "pruned"), (1, "pruned"), (2, "full"), (2, "pruned")]
-    assert told == ["4 runs of a cell to measure, about 0.9 minutes, 2 of 6 are in " + f"{path} already"]
+    assert told == ["4 runs of a cell to measure, about 0.8 minutes, 2 of 6 are in " + f"{path} already"]
 
 
 def test_a_line_that_was_cut_off_is_measured_again(path):

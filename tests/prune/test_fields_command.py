@@ -10,8 +10,8 @@ from typer.testing import CliRunner
 FLEET = Path(__file__).parents[2] / "examples" / "fleet"
 
 
-def run(*arguments: str) -> tuple[int, str, str]:
-    result = CliRunner().invoke(app, ["fields", *arguments])
+def run(*arguments: str, command: str = "fields") -> tuple[int, str, str]:
+    result = CliRunner().invoke(app, [command, *arguments])
     return result.exit_code, result.stdout, result.stderr
 
 
@@ -44,9 +44,10 @@ def test_topics_that_the_user_closes(tmp_path):
         assert "may be read elsewhere" not in out
 
 
+@pytest.mark.parametrize("command", ["fields", "prune"])
 @pytest.mark.parametrize("option", ["--topic", "--assume-closed"])
-def test_a_topic_that_is_not_there(option):
-    status, _, err = run(str(FLEET), option, "/repotr")
+def test_a_topic_that_is_not_there(option, command):
+    status, _, err = run(str(FLEET), option, "/repotr", command=command)
     assert status == 2
     assert err == f"rosimpact: {option} /repotr: no such topic; `/report` is the nearest\n"
 

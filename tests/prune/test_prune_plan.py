@@ -518,3 +518,89 @@ def test_what_may_be_the_one_field_of_a_message_is_not_wrapped(tmp_path):
     files.update({**PYTHON, "nodes/scripts/talk.py": talk, "nodes/scripts/hear.py": hear})
     (refusal,) = prepare(write(tmp_path, files)).plan.refusals
     assert refusal.reason == "nodes/scripts/talk.py:9 may publish the one field that msgs/State has"
+
+
+RELEASED = {
+    "src/nodes/package.xml": """<package format="2"><name>nodes</name><version>1.0.0</version>
+  <description>d</description>
+  <maintainer email="a@b.org">m</maintainer><license>BSD</license>
+  <buildtool_depend>catkin</buildtool_depend>
+  <depend>sensor_msgs</depend>
+  <depend>nav_msgs</depend>
+</package>
+""",
+    "src/nodes/CMakeLists.txt": """project(nodes)
+find_package(catkin REQUIRED COMPONENTS roscpp nav_msgs sensor_msgs)
+catkin_package()
+add_executable(talk src/talk.cpp)
+""",
+    "src/nodes/src/talk.cpp": """#include <ros/ros.h>
+#include <nav_msgs/Odometry.h>
+#include <sensor_msgs/Imu.h>
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "talk");
+  ros::NodeHandle nh;
+  ros::Publisher odom = nh.advertise<nav_msgs::Odometry>("odom", 1);
+  ros::Publisher imu = nh.advertise<sensor_msgs::Imu>("imu", 1);
+  odom.publish(nav_msgs::Odometry());
+  imu.publish(sensor_msgs::Imu());
+}
+""",
+    "src/scripts/package.xml": """<package format="2"><name>scripts</name><version>1.0.0</version>
+  <description>d</description>
+  <maintainer email="a@b.org">m</maintainer><license>BSD</license>
+  <buildtool_depend>catkin</buildtool_depend>
+  <depend>nav_msgs</depend>
+</package>
+""",
+    "src/scripts/CMakeLists.txt": "project(scripts)\nfind_package(catkin REQUIRED)\ncatkin_package()\n",
+    "src/scripts/nodes/hear": """#!/usr/bin/env python3
+import rospy
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import Imu
+
+rospy.init_node("hear")
+rospy.Subscriber("odom", Odometry, lambda msg: print(msg.pose.pose.position.x))
+rospy.Subscriber("imu", Imu, lambda msg: print(msg.orientation.w))
+rospy.spin()
+""",
+}  # fmt: skip
+
+
+def test_a_new_package_is_named_once_in_cmake_and_not_for_scripts(tmp_path):
+    pytest.importorskip("rosbags")
+    prepared = prepare(write(tmp_path, RELEASED))
+    assert {plan.topics for plan in prepared.plan.plans} == {("/odom",), ("/imu",)}
+    build = prepared.plan.changed["src/nodes/CMakeLists.txt"].decode()
+    assert build.count("light_msgs") == 1
+    assert "src/scripts/CMakeLists.txt" not in prepared.plan.changed
+    for name in ("nodes", "scripts"):
+        assert prepared.plan.changed[f"src/{name}/package.xml"].count(b"<depend>light_msgs</depend>") == 1
+
+
+@pytest.mark.parametrize(
+    "head",
+    ["#!/usr/bin/env python3\n# -*- coding: utf-8 -*-\n", "# -*- coding: utf-8 -*-\n", "#!/usr/bin/env python3\n", ""],
+)
+def test_the_coding_of_a_script_stays_in_its_first_lines(head, tmp_path):
+    hear = f"""{head}def on_state(state):
+    import rospy
+    rospy.loginfo(state.level)
+
+
+def main():
+    import rospy
+    from msgs.msg import State
+    rospy.init_node("hear")
+    rospy.Subscriber("state", State, on_state)
+    rospy.spin()
+
+
+main()
+"""
+    files = {name: text for name, text in ROS1.items() if name.startswith("msgs/") or name == "nodes/package.xml"}
+    prepared = prepare(write(tmp_path, {**files, **PYTHON, "nodes/scripts/hear.py": hear}))
+    found = prepared.plan.changed["nodes/scripts/hear.py"].decode()
+    assert found.startswith(f"{head}from msgs.msg import StateLight\n")
+    compile(found, "hear.py", "exec")

@@ -104,3 +104,11 @@ def test_reports_have_nothing_of_theirs(name, other):
 )
 def test_words_that_github_links_are_code(text, expected):
     assert escape_markdown(text) == expected
+
+
+def test_a_warning_has_the_places_of_its_notes(quiet):
+    found = [Finding("r", severity, "ui", f"{severity}.cpp", 1, 0, "x", ("jazzy",), "`x` will go")
+             for severity in ("note", "warning")]  # fmt: skip
+    lines = markdown.render(quiet._replace(findings=tuple(found))).splitlines()
+    assert lines[2] == "- ⚠️ `warning.cpp:1` and 1 more place (`note.cpp:1`): `x` will go (jazzy)"
+    assert "note" not in lines[-1]

@@ -124,6 +124,19 @@ def test_an_equal_message_is_shown_once_with_its_places(quiet):
     assert "\n  and 2 more places: src/ui/1.cpp:1, src/ui/2.cpp:1\n" in text_of_three
 
 
+def test_a_warning_has_the_places_of_its_notes(quiet):
+    def make(path, severity, message="`x` will go"):
+        return Finding("r", severity, "ui", path, 1, 0, "x", ("jazzy",), message)
+
+    found = (make("a.cpp", "note"), make("b.cpp", "warning"), make("c.cpp", "note"), make("d.cpp", "note", "other"))
+    lines = text.render(quiet._replace(findings=found)).splitlines()
+    assert lines[4:7] == ["warning[r] jazzy: `x` will go", "  → b.cpp:1", "  and 2 more places: a.cpp:1, c.cpp:1"]
+    assert lines[-1].startswith("1 warning in 3 places, 1 note (shown with --notes) · ")
+    # What fails is told for itself.
+    lines = text.render(quiet._replace(findings=(make("a.cpp", "error"), *found[1:3]))).splitlines()
+    assert lines[-1].startswith("1 error, 1 warning in 2 places · ")
+
+
 def test_each_package_has_its_own_cause(quiet):
     findings = tuple(Finding("r", "error", p, f"{p}/a.cpp", n, 0, "x", (), "`x` is gone") for p in "ab" for n in (1, 2))
     lines = text.render(quiet._replace(findings=findings)).splitlines()

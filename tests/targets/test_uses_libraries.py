@@ -158,6 +158,10 @@ SNIPPETS = [
     ("yaml.load(stream)", {"pyyaml": "5.4.1"}, ""),
     ("yaml.load(stream, Loader=yaml.SafeLoader)", {"pyyaml": "6.0.1"}, ""),
     ("yaml.load(*arguments)", {"pyyaml": "6.0.1"}, ""),
+    ("finder = cv2.ORB()", {"opencv": "4.2.0"}, "cv2.ORB()"),
+    ("finder = cv2.ORB(nfeatures=400)", {"opencv": "4.10.0"}, "cv2.ORB()"),
+    ("finder = cv2.ORB()", {"opencv": "2.4.8"}, ""),
+    ("finder = cv2.SIFT.create() if isinstance(it, cv2.ORB) else cv2.ORB_create()", {"opencv": "4.10.0"}, ""),
     (SLOTS.format("nullptr"), {"python": "3.8.2"}, "nullptr for tp_print"),
     (SLOTS.format("nullptr"), {"python": "3.6.9"}, ""),
     (SLOTS.format("NULL"), {"python": "3.8.2"}, ""),  # of which compilers only warn

@@ -59,7 +59,8 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     pointer or reference. made: classes of which it makes objects by `new`, make_shared() or make_unique(). parents:
     derived classes and aliases of types, with the words of their bases or of what they stand for. initializes: a
     constructor may initialize members, or a container makes elements (`emplace_back`). code: a digest of all but
-    comments, literals, includes and blanks. tree_nodes: what tree_nodes.py finds; None for nothing.
+    comments, literals, includes and blanks. tree_nodes: what tree_nodes.py finds; None for nothing. errors: #error
+    lines under conditions, with their messages.
     """
 
     includes: tuple[Include, ...]
@@ -83,6 +84,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     initializes: bool = False
     code: str = ""
     tree_nodes: TreeNodes | None = None
+    errors: tuple[NameUseInFile, ...] = ()
 
     @property
     def types(self) -> tuple[str, ...]:
@@ -118,7 +120,8 @@ _HIDDEN = re.compile(
         | (?:[^'\\\n]+|\\[\s\S])*'?)
     | \#[ \t]*(?:include(?:_next)?|import)\b(?:[ \t]|\\\n|/\*[^*\n]*\*/)*
         (?:<(?P<angled>[^>\n]{0,1000})>|"(?P<quoted>[^"\n]{0,1000})"|(?P<computed>[A-Za-z_]\w*))
-    | \#[ \t]*(?:error|warning|pragma|line|ident)\b[^\n]*(?:(?<=\\)\n[^\n]*)*
+    | \#[ \t]*(?:error\b(?P<error>[^\n]*(?:(?<=\\)\n[^\n]*)*))
+    | \#[ \t]*(?:warning|pragma|line|ident)\b[^\n]*(?:(?<=\\)\n[^\n]*)*
     """,
     re.VERBOSE,
 )
@@ -324,6 +327,7 @@ class Scan:
     locate: Callable[[int], tuple[int, int]]
     segments: list[tuple[int, int, tuple[Condition, ...]]]
     found: list[tuple[int, bool, str]]
+    errors: list[tuple[int, str]]
     defined: dict[str, None]
     problems: list[Problem]
     ends: list[int]
@@ -413,6 +417,7 @@ def scan(data: bytes) -> Scan:
     problems: list[Problem] = []
     locate = _make_locator(text)
     found: list[tuple[int, bool, str]] = []
+    errors: list[tuple[int, str]] = []
 
     def blank_match(match: re.Match[str]) -> str:
         hidden = match.group()
@@ -421,6 +426,8 @@ def scan(data: bytes) -> Scan:
             group = match.lastgroup
             if group == "angled" or group == "quoted":
                 found.append((match.start(group), group == "angled", match.group(group)))
+            elif group == "error":
+                errors.append((match.start(), match.group(group)))
             elif group == "computed":
                 problems.append(Problem(locate(match.start())[0], f"`#include {match.group(group)}` names a macro"))
         elif first == '"':
@@ -481,7 +488,7 @@ def scan(data: bytes) -> Scan:
     if blocks.open:
         problems.append(Problem(text.count("\n") + 1, f"{len(blocks.open)} `#if` without `#endif`"))
     ends = [end for _, end, _ in segments]
-    return Scan(text, visible, locate, segments, found, defined, problems, ends, directives)
+    return Scan(text, visible, locate, segments, found, errors, defined, problems, ends, directives)
 
 
 def find_at_line_starts(pattern: re.Pattern[str], text: str) -> Iterator[re.Match[str]]:
@@ -577,6 +584,7 @@ def extract(data: bytes) -> CppFile:
         initializes="emplace" in tokens_text or _INITIALIZES.search(visible) is not None,
         code=hashlib.sha1(visible.encode().translate(None, b" \t\r\n")).hexdigest()[:16],
         tree_nodes=scanned.read_tree_nodes(),
+        errors=_list_errors(scanned),
     )
 
 
@@ -743,6 +751,20 @@ def _matches(pattern: re.Pattern[str], begins: Iterable[re.Pattern[str]], text: 
 
 def _get_line(item: Problem | Reference) -> int:
     return item.line
+
+
+_LONGEST_MESSAGE = 80
+
+
+def _list_errors(scanned: Scan) -> tuple[NameUseInFile, ...]:
+    """The #error lines that stand under conditions."""
+    found = []
+    for offset, text in scanned.errors:
+        conditions = scanned.find_segment(offset)[2]
+        if conditions:
+            message = " ".join(text.replace("\\\n", " ").split())[:_LONGEST_MESSAGE]
+            found.append(NameUseInFile(message, *scanned.locate(offset), conditions))
+    return tuple(found)
 
 
 def collect_includes(scanned: Scan) -> tuple[Include, ...]:

@@ -1,6 +1,7 @@
 """Launch files in Python to the facts of flow_launch: what generate_launch_description() gives, without running it."""
 
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import Any
 
 from ..place import Problem
@@ -11,6 +12,9 @@ from .python_moveit import make
 from .python_values import TooMuch
 from .python_walk import MOST_STEPS, HelperModule, Walker
 
+# What many launch files import is read once; the walks through it leave its tree as it is.
+_read = lru_cache(maxsize=64)(read)
+
 
 def extract(data: bytes, helpers: Mapping[str, tuple[bytes, str]] | None = None) -> LaunchFile:
     """The facts of a launch file in Python. Never raises.
@@ -18,11 +22,11 @@ def extract(data: bytes, helpers: Mapping[str, tuple[bytes, str]] | None = None)
     A file without generate_launch_description() says so as a problem. helpers: modules that it may import, by their
     dotted names: the source, and the package that relative imports in it are of.
     """
-    source = read(data)
+    source = _read(data)
     problems = source.problems
     if source.tree is None:
         return LaunchFile("python", 2, (), problems or (Problem(1, "not parsed: is not Python 3"),))
-    parsed = {name: (read(text).tree, package) for name, (text, package) in (helpers or {}).items()}
+    parsed = {name: (_read(text).tree, package) for name, (text, package) in (helpers or {}).items()}
     modules = {name: HelperModule(tree, package) for name, (tree, package) in parsed.items() if tree is not None}
     try:
         walker = Walker(make, modules)

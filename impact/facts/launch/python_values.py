@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import msgspec
@@ -228,6 +229,7 @@ def find_index(holder: Items, key: Any) -> int | None:
     return key.value if -len(holder.items) <= key.value < len(holder.items) else None
 
 
+@lru_cache(maxsize=8192)
 def get_source(node: ast.AST) -> str:
     """What a node says, in one line and cut short."""
     try:

@@ -187,12 +187,15 @@ class ReadFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class CMakeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A command called that nothing in the tree or in CMake itself defines (`ament_add_gtest`, `catkin_add_nosetests`),
     a variable read that nothing sets (`Eigen3_INCLUDE_DIR`), or something known that not every version of CMake or not
-    every machine has. kind: `command`, `variable`, `unset`, `feature` or `environment`.
+    every machine has. kind: `command`, `variable`, `unset`, `feature`, `dropped`, `old policy`, `policies` or
+    `environment`.
     for variable, context is the command it is read in; `unset` is a variable that install() reads and that nothing can
     have set; for a command of one of CMake's modules, the module that would
     have to be included or found first (`FindPkgConfig` for `pkg_check_modules`); for a `feature`, which is a command,
-    module or policy of CMake itself, the version that brought it; an `environment` is a variable that ros_environment
-    sets, read by a test. alike: of a variable that nothing can have set, one
+    module or policy of CMake itself, the version that brought it; for a `dropped` command or module the policy that is
+    NEW there and takes it away; for an `old policy`, set to OLD, the version that refuses that; `policies` are those of
+    the version `name`, which a file of a subdirectory or cmake_policy() asks for; an `environment` is a variable that
+    ros_environment sets, read by a test. alike: of a variable that nothing can have set, one
     that is set there and has one word more or less in its name. makes: of a command, what it may make: its first
     argument, and its DESTINATION."""
 
@@ -216,13 +219,14 @@ class DependencyCall(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class RefusedName(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A name at which CMake stops. kind: `twice` (a target that is added a second time; conditions are those of both
-    times), `mixed` (a target that is linked with keywords and without), `no scope` (an argument that stands where
-    a command wants PUBLIC, PRIVATE or INTERFACE), `no target` (something is given to a target
-    that is not there yet, or never), `branch` (the same, where it is there under one of `ways` alone, the conditions of
-    what makes it), `project` (catkin_package() or ament_package() finds another name in package.xml than that of the
-    project), `version` (project() is given a version under the policies of a CMake before 3.0), `no value` (a property
-    of set_target_properties() whose value is a variable that nothing sets), `no sources` (a library or executable of
+    """A name at which CMake stops. kind: `twice` (a target that is added a second time; conditions are those of
+    both times), `mixed` (a target that is linked with keywords and without), `no scope` (an argument that stands
+    where a command wants PUBLIC, PRIVATE or INTERFACE), `no target` (something is given to a target that is not
+    there yet, or never), `branch` (the same, where it is there under one of `ways` alone, the conditions of what
+    makes it), `branch sources` (a target whose sources, `patterns`, are there under one of `ways` alone), `project`
+    (catkin_package() or ament_package() finds another name in package.xml than that of the project), `version`
+    (project() is given a version under the policies of a CMake before 3.0), `no value` (a property of
+    set_target_properties() whose value is a variable that nothing sets), `no sources` (a library or executable of
     what file(GLOB) finds with `patterns`, which is nothing), `late` (a macro that has to come before
     catkin_package()), `unguarded` (a command for tests that is called although tests may be switched off)."""
 

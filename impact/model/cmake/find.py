@@ -114,6 +114,7 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
     if not (sought or flags & {"CONFIG", "NO_MODULE"}):
         if required:
             run.use_feature(f"Find{name}", name.at)
+            run.use_dropped(f"Find{name}", name.at)
         _run_module(run, call, str(name))
     if required:
         found = CMakeValue((wrap("1", call.at),))

@@ -35,7 +35,16 @@ from .build import (
     is_for_tests,
 )
 from .drafts import TargetDraft, Targets
-from .names import BUILTIN_COMMANDS, COMMANDS, FALSE_PLATFORMS, MODULE_OF, READ_SUFFIXES, SINCE
+from .names import (
+    BUILTIN_COMMANDS,
+    COMMANDS,
+    DROPPED,
+    FALSE_PLATFORMS,
+    MODULE_OF,
+    ONLY_NEW,
+    READ_SUFFIXES,
+    SINCE,
+)
 from .values import (
     LITERAL,
     MAX_TEXT,
@@ -149,6 +158,7 @@ class Interpreter:
         self.maybe_break = False
         self.minimum_policy: tuple[int, ...] = (3, 5)
         self.versions_projects = False  # CMP0048 is set
+        self.policies: dict[str, str] = {}  # set one by one: NEW or OLD, empty where it is not sure
         self.parsed: dict[str, list[CommandCall | Block] | None] = {}
         self.including: list[str] = []
         self.extended: set[str] = set()
@@ -313,6 +323,7 @@ class Interpreter:
         self.spend(1)
         name = self.command = call.name
         self.use_feature(name, call.at)
+        self.use_dropped(name, call.at)
         if name in _GROWN:
             for template in call.templates if name == "project" else call.templates[:1]:
                 self.use_feature(f"{name}({template.raw})", call.at)
@@ -374,6 +385,21 @@ class Interpreter:
         since = SINCE.get(name)
         if since and not self.silent and name not in self.definitions:
             self.uses[CMakeUse("feature", name, self.locate(at), since, self.conditions)] = None
+
+    def use_dropped(self, name: str, at: At) -> None:
+        """Notes a command or module that a policy takes away under the policies that are set here."""
+        policy = DROPPED.get(name, "")
+        if not policy or self.silent or name in self.definitions or self.call_site is not None:
+            return
+        since = SINCE.get(policy, "3.0")
+        default = "NEW" if self.minimum is not None and self.minimum_policy >= tests.make_version_key(since) else "OLD"
+        if self.policies.get(policy, default) == "NEW":
+            self.uses[CMakeUse("dropped", name, self.locate(at), policy, self.conditions)] = None
+
+    def use_policy(self, kind: str, name: str, at: At) -> None:
+        """Notes policies that not every version of CMake has. kind: as of CMakeUse."""
+        if not self.silent and self.call_site is None:
+            self.uses[CMakeUse(kind, name, self.locate(at), ONLY_NEW.get(name, ""), self.conditions)] = None
 
     def use_command(self, call: CommandCall, words: Sequence[Word] = ()) -> None:
         """Notes a command that neither CMake nor the tree defines. words: its arguments, where what it does is not
@@ -1229,12 +1255,18 @@ class Interpreter:
         return draft
 
     def refuse(
-        self, kind: str, name: Word, conditions: tuple[Condition, ...] = (), patterns: Sequence[str] = ()
+        self,
+        kind: str,
+        name: Word,
+        conditions: tuple[Condition, ...] = (),
+        patterns: Sequence[str] = (),
+        ways: Sequence[tuple[Condition, ...]] = (),
     ) -> None:
-        """Notes a name at which CMake stops. conditions: that it stops under besides those of the place."""
+        """Notes a name at which CMake stops. conditions: that it stops under besides those of the place. patterns,
+        ways: as of RefusedName."""
         if name.sure and "$<" not in name and not self.silent:
             conditions = merge(conditions, self.merge_with(name))
-            made = RefusedName(kind, str(name), self.locate(name.at), conditions, patterns=tuple(patterns))
+            made = RefusedName(kind, str(name), self.locate(name.at), conditions, tuple(ways), tuple(patterns))
             self.refused[made] = None
 
     @property

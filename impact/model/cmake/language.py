@@ -8,7 +8,7 @@ from .build import FoundPackage
 from .conditions import make_version_key
 from .interpreter import BREAK, CONTINUE, FATAL, RETURN, Interpreter, handles
 from .lists import list_items, may_be_set_elsewhere, parse_int
-from .names import MODULES, MODULES_WITH, make_name_set
+from .names import MODULES, MODULES_WITH, ONLY_NEW, make_name_set
 from .standard import note_variable
 from .targets import note_written
 from .values import (
@@ -98,6 +98,7 @@ def include(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
         add_module(run, str(name))
         if not optional:
             run.use_feature(str(name), name.at)
+            run.use_dropped(str(name), name.at)
         if name in MODULES:
             if name.startswith("Find") and not name.startswith("FindPackage"):
                 place = run.locate(name.at)
@@ -147,7 +148,9 @@ def add_subdirectory(run: Interpreter, call: CommandCall, args: list[Word]) -> i
             run.add_read(relative, call.name, directory)
             run.give_up(directory.at, f"add_subdirectory({run.clean(directory)}) is outside the tree")
             continue
+        policies = run.minimum_policy, dict(run.policies)
         signal = run.run_file(posixpath.join(relative, "CMakeLists.txt"), directory.at, relative)
+        run.minimum_policy, run.policies = policies
         if signal is None or not run.is_in_package(f"{relative}/"):
             run.add_read(relative, call.name, directory)
         if signal is None:
@@ -197,16 +200,22 @@ def require_cmake_version(run: Interpreter, call: CommandCall, args: list[Word])
     lower, _, upper = args[1].partition("...")
     if not run.silent and (run.minimum is None or (run.is_in_package(call.path) and call.path == run.minimum[1].path)):
         run.minimum = (str(args[1]), run.locate(args[1].at))
+    else:
+        run.use_policy("policies", str(args[1]), args[1].at)
     run.minimum_policy = make_version_key(upper or lower)
 
 
 @handles("cmake_policy")
 def set_cmake_policy(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """cmake_policy(VERSION), CMP0048 and CMP0054."""
+    """cmake_policy(VERSION) and cmake_policy(SET)."""
     if len(args) >= 2 and args[0] == "VERSION":
+        run.use_policy("policies", str(args[1]), args[1].at)
         run.minimum_policy = max(run.minimum_policy, make_version_key(args[1].split("...")[-1]))
     elif args[:1] == ["SET"] and len(args) > 1:
         run.use_feature(str(args[1]), args[1].at)
+        run.policies[str(args[1])] = str(args[2]) if len(args) > 2 and not run.conditions else ""
+        if args[2:3] == ["OLD"] and args[1] in ONLY_NEW:
+            run.use_policy("old policy", str(args[1]), args[1].at)
     if args[:2] == ["SET", "CMP0054"] and args[2:3] == ["NEW"]:
         run.minimum_policy = max(run.minimum_policy, (3, 1))
     if args[:2] == ["SET", "CMP0048"]:

@@ -28,12 +28,15 @@ def make_name_set(text: str) -> frozenset[str]:
 
 class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What names.toml holds, names written as one text. commands, modules: of all versions of CMake. since: the version
-    that brought a command, module or policy, for those that 3.0 lacks. commands_of: what modules define. brings: the
-    modules that another one includes."""
+    that brought a command, module or policy, for those that 3.0 lacks. only_new: the policies that a version has NEW
+    alone, by that version. dropped: the policy that takes a command or module away where it is NEW. commands_of: what
+    modules define. brings: the modules that another one includes."""
 
     commands: str
     modules: str
     since: dict[str, str]
+    only_new: dict[str, str]
+    dropped: dict[str, str]
     commands_of: dict[str, str]
     brings: dict[str, str]
 
@@ -59,6 +62,14 @@ MODULES_WITH = {module: split_names(others) for module, others in _TABLE.brings.
 
 # Command, module or policy -> the version of CMake that brought it.
 SINCE = _TABLE.since
+
+# Policy -> the version of CMake from which on it cannot be OLD.
+ONLY_NEW: dict[str, str] = {
+    policy: version for version, policies in _TABLE.only_new.items() for policy in policies.split()
+}
+
+# Command or module -> the policy that takes it away where it is NEW.
+DROPPED = _TABLE.dropped
 
 # Defined and empty here: the target platforms are Linux with GCC.
 FALSE_PLATFORMS = split_names(

@@ -64,8 +64,8 @@ def add_library(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     draft.archive = draft.installed_as == "static" or (kind == "library" and not form and makes_archives(run))
     draft.excluded = "EXCLUDE_FROM_ALL" in rest
     add_sources(run, draft, sources)
-    if kind in ("library", "module") and not sources:
-        note_sourceless(run, call, name)
+    if kind in ("library", "module"):
+        note_sourceless(run, call, name, sources)
 
 
 @handles("add_executable", "cuda_add_executable", "rosbuild_add_executable", "qt_add_executable", "qt5_add_executable",
@@ -79,12 +79,16 @@ def add_executable(run: Interpreter, call: CommandCall, args: list[Word]) -> Non
     draft.excluded = "EXCLUDE_FROM_ALL" in rest
     sources = [item for item in rest if item not in ("WIN32", "MACOSX_BUNDLE", *_LIBRARY_FLAGS)]
     add_sources(run, draft, sources)
-    if not sources:
-        note_sourceless(run, call, name)
+    note_sourceless(run, call, name, sources)
 
 
-def note_sourceless(run: Interpreter, call: CommandCall, name: Word) -> None:
-    """Refuses a target all of whose sources are of a file(GLOB) that finds none."""
+def note_sourceless(run: Interpreter, call: CommandCall, name: Word, sources: list[Word]) -> None:
+    """Refuses a target all of whose sources are of a file(GLOB) that finds none, or stand in branches."""
+    if sources:
+        if all(source.conditions and "$" not in source for source in sources):
+            ways = [source.conditions for source in sources]
+            run.refuse("branch sources", name, patterns=[*map(run.resolve_tree_path, sources)], ways=ways)
+        return
     variables = [template.raw[2:-1] for template in call.templates[1:] if template.raw.startswith("${")]
     patterns = [pattern for variable in variables for pattern in run.empty_globs.get(variable, ())]
     if patterns and len(variables) == sum(variable in run.empty_globs for variable in variables):

@@ -259,6 +259,7 @@ class _Walk:
                     self.results.open(one.owner)
             if fn.source.facts.language != "cpp" and variable.kind == "member":
                 self._set_properties(variable.name, spot)
+                self._set_attribute(variable, spot)
 
     def _is_property(self, variable: Variable) -> bool:
         """Whether a member is made by `property(...)`, of functions that are not looked for."""
@@ -270,6 +271,17 @@ class _Walk:
         for one in self.code.by_tail.get(name, ()):
             if one.facts.owner and one.facts.parameters and one.source.facts.language == "python":
                 self.hold(Variable("local", one.place, one.facts.parameters[0].name), spot.path)
+                self.results.open(one.place)
+
+    def _set_attribute(self, variable: Variable, spot: Spot) -> None:
+        """Gives a field to `__setattr__` of the class that a member is of, which is called with the name and the
+        value."""
+        bodies = self.code.list_class_bodies(variable.owner)
+        bases = {base.key for cls in bodies for base in self.code.list_bases(cls)}
+        for one in self.code.by_tail.get("__setattr__", ()):
+            owner = self.code.find_owner(one)
+            if owner is not None and owner.key in bases and len(one.facts.parameters) > 1:
+                self.hold(Variable("local", one.place, one.facts.parameters[1].name), spot.path)
                 self.results.open(one.place)
 
     def _list_referred(self, variable: Variable, fn: Fn, adds: bool) -> tuple[Variable, ...] | None:

@@ -39,13 +39,15 @@ class SubscriberFields(msgspec.Struct, frozen=True):
 
 class PublisherFields(msgspec.Struct, frozen=True):
     """A publish statement. sets: fields that are set, each where it is first; unknown: why others may be set too, empty
-    where they are not."""
+    where they are not. lengths: of texts in bytes and of arrays in elements, by field, where the code writes them;
+    `names[]` is of the texts in an array."""
 
     node: str
     path: str
     line: int
     sets: tuple[FieldAt, ...]
     unknown: str = ""
+    lengths: tuple[tuple[str, int], ...] = ()
 
 
 class TopicFields(msgspec.Struct, frozen=True):
@@ -62,7 +64,9 @@ class TopicFields(msgspec.Struct, frozen=True):
 
 
 class FieldReport(msgspec.Struct, frozen=True):
-    """All topics. unknown: topics whose type's fields are not known, with the type."""
+    """All topics. unknown: topics whose type's fields are not known, with the type. unnamed: subscribers whose topic is
+    not known, under an empty name, by type."""
 
     topics: tuple[TopicFields, ...] = ()
     unknown: tuple[tuple[str, str], ...] = ()
+    unnamed: tuple[TopicFields, ...] = ()

@@ -17,7 +17,7 @@ from ...facts.store import Store, recall
 from ..flow.code import Fn, Variable, get_tail
 from ..flow.definitions import describe_interfaces
 from ..flow.endpoints import Site, Statement
-from ..flow.graph import Endpoint, Graph, Publish
+from ..flow.graph import LOST_INCLUDE, Endpoint, Graph, Publish, Unresolved
 from ..flow.join import Join
 from ..flow.workspace import get_facts, get_flow, list_code
 from ..workspace import Workspace
@@ -37,7 +37,7 @@ def report_fields(workspace: Workspace, graph: Graph, store: Store | None, jobs:
     """The fields of all topics of a workspace. graph: of its code, or of what launch files start. store: remembers the
     report by the content that it was made from."""
     flow = get_flow(workspace)
-    key = flow.key + _make_graph_key(graph)
+    key = flow.key + _make_graph_key(graph, list_foreign(workspace))
 
     def make() -> FieldReport:
         return TopicReader(workspace, flow.code, graph, extract_uses(workspace, jobs)).report()
@@ -60,9 +60,8 @@ def list_unset_fields(workspace: Workspace, topic: TopicFields) -> Iterator[tupl
     unsure = any(one.how in _UNSURE or one.implied for one in own) or any(
         one.type in (topic.type, "") and one.how in _UNSURE and _may_be(one.topic, topic.topic) for one in ends
     )
-    lost = any(
-        one.what.startswith(("publisher", "publish", "started node")) for one in flow.system.coverage.unresolved
-    )
+    lost = any(one.what.startswith(("publisher", "publish")) for one in flow.system.coverage.unresolved)
+    lost = lost or bool(list_foreign(workspace))
     if not topic.publishers or unsure or lost or any(one.unknown for one in topic.publishers):
         return
     stated = {(one.path, one.line) for one in topic.publishers}
@@ -77,12 +76,21 @@ def list_unset_fields(workspace: Workspace, topic: TopicFields) -> Iterator[tupl
             yield read.field, read
 
 
+@cache_in_derived
+def list_foreign(workspace: Workspace) -> tuple[Unresolved, ...]:
+    """What launch files start or include whose code is not here, and which may publish and subscribe to anything."""
+    flow = get_flow(workspace)
+    graphs = [graph for one in flow.launches for graph in (one.graph, one.possible) if graph is not None]
+    rows = (row for graph in (flow.system, *graphs) for row in graph.coverage.unresolved)
+    return tuple(dict.fromkeys(row for row in rows if row.what.startswith(("started ", LOST_INCLUDE))))
+
+
 def _get_place(one: FieldAt) -> tuple[str, int, str]:
     return one.path, one.line, one.field
 
 
-def _make_graph_key(graph: Graph) -> bytes:
-    return hashlib.sha1(msgspec.msgpack.encode((graph.endpoints, graph.publishes, graph.nodes))).digest()
+def _make_graph_key(graph: Graph, foreign: tuple[Unresolved, ...]) -> bytes:
+    return hashlib.sha1(msgspec.msgpack.encode((graph.endpoints, graph.publishes, graph.nodes, foreign))).digest()
 
 
 def extract_uses(workspace: Workspace, jobs: int | None = None) -> dict[str, FieldFile]:
@@ -103,12 +111,12 @@ class TopicReader:
     """Reads the topics of a graph. files: field facts by path."""
 
     def __init__(self, workspace: Workspace, join: Join, graph: Graph, files: dict[str, FieldFile]):
-        self.join, self.graph = join, graph
+        self.join, self.graph, self.foreign = join, graph, list_foreign(workspace)
         types = {one.type for one in graph.endpoints if "/" in one.type}
         shapes = Shapes(describe_interfaces(workspace, sorted(("topic", type_) for type_ in types)))
         self.shapes = shapes
         self.reader = FieldReader(join.code, Uses(join.code, files), shapes)
-        self._readings: dict[tuple[tuple[str, ...], str], Reading] = {}
+        self._readings: dict[tuple[tuple[str, ...], str, tuple[int, int] | None], Reading] = {}
         for one in graph.endpoints:
             for fn in self.list_callbacks(one) if one.role == "subscriber" and one.type else ():
                 names = select_parameters(fn, one.type, join.code)
@@ -127,7 +135,16 @@ class TopicReader:
                 unknown.append(key)
                 continue
             found.append(self._make_topic(topic, type_, subscribers.get(key, []), publishers.get(key, [])))
-        return FieldReport(tuple(found), tuple(unknown))
+        return FieldReport(tuple(found), tuple(unknown), tuple(self._list_unnamed()))
+
+    def _list_unnamed(self) -> Iterator[TopicFields]:
+        """What subscribers read whose topic is not known, by type."""
+        ends = [one for one in self.graph.endpoints if one.role == "subscriber" and not one.topic and not one.implied]
+        for type_, rows in sorted(group_pairs((one.type, one) for one in ends if "/" in one.type).items()):
+            if self.shapes.is_known(type_):
+                leaves = self.shapes.list_leaves(type_)
+                read = tuple(self._make_subscriber(one, type_, leaves) for one in rows)
+                yield TopicFields("", type_, tuple(map(show, leaves)), read, (), (), ("its name is not known",))
 
     def _group(self, role: str) -> dict[tuple[str, str], list[Endpoint]]:
         rows = (one for one in self.graph.endpoints if one.role == role and one.topic and "/" in one.type)
@@ -162,8 +179,12 @@ class TopicReader:
         for lost in self.graph.coverage.unresolved:
             if lost.what in ("subscriber name", "subscriber topic", "subscriber type"):
                 yield f"the name or type that {lost.path}:{lost.line} subscribes to is not known"
-            elif lost.what == "started node":
+        own = (one for one in self.graph.coverage.unresolved if one.what.startswith(("started ", LOST_INCLUDE)))
+        for lost in dict.fromkeys((*own, *self.foreign)):
+            if lost.what.startswith("started "):
                 yield f"{lost.path}:{lost.line} starts `{lost.written or 'a node'}`, whose code is not here"
+            else:
+                yield f"{lost.path}:{lost.line} includes `{lost.written or 'a launch file'}`, which is not here"
 
     @cached_property
     def _waits(self) -> list[tuple[str, frozenset[str]]]:
@@ -216,11 +237,12 @@ class TopicReader:
         if not callbacks:
             why = endpoint.reason or ("the framework reads it" if endpoint.implied else "its callback is not known")
             return Reading({}, {}, (Escape((), why, endpoint.path, endpoint.line),))
-        key = tuple(fn.place for fn in callbacks), type_
+        position = self._find_position(endpoint)
+        key = tuple(fn.place for fn in callbacks), type_, position
         known = self._readings.get(key)
         if known is None:
             known = self._readings[key] = self._merge(
-                [self._read_callback(fn, type_) for fn in callbacks]
+                [self._read_callback(fn, type_, position) for fn in callbacks]
             )
         return known._replace(escapes=(*known.escapes, *self._list_filtered(endpoint, type_)))
 
@@ -248,8 +270,17 @@ class TopicReader:
             for header in source.facts.includes
         )
 
-    def _read_callback(self, fn: Fn, type_: str) -> Reading:
+    def _find_position(self, endpoint: Endpoint) -> tuple[int, int] | None:
+        """Which of the messages that a synchronizer gives to its callbacks is a subscriber's, and of how many."""
+        rows = [one for one in self.sites.get((endpoint.path, endpoint.line), ()) if one.role == endpoint.role]
+        filtered = len(rows) == 1 and rows[0].use.row.framework == "message_filters"
+        return self.join.sites.find_position(rows[0]) if filtered else None
+
+    def _read_callback(self, fn: Fn, type_: str, position: tuple[int, int] | None = None) -> Reading:
         names = select_parameters(fn, type_, self.join.code)
+        given = [one.name for one in fn.facts.parameters]
+        if position is not None and position[1] == len(given) and given[position[0]] in names:
+            names = [given[position[0]]]
         if names:
             return self.reader.read_parameter(fn, names, type_)
         if not fn.facts.parameters or all(not one.name for one in fn.facts.parameters):
@@ -278,12 +309,14 @@ class TopicReader:
 
     def _make_publisher(self, publish: Publish, type_: str) -> PublisherFields:
         statement = self._statements.get((publish.path, publish.line))
-        writing = Writing({}, "its statement is not known")
+        writing = Writing({}, "its statement is not known", {})
         if statement is not None and not publish.through:
             use = statement.use
             arguments = use.call.arguments
             writing = find_writes(self.reader, arguments[0] if arguments else None, use.fn, use.call.line, type_)
-        return PublisherFields(publish.node, publish.path, publish.line, _list_places(writing.sets), writing.unknown)
+        lengths = tuple((show(path), length) for path, length in sorted(writing.lengths.items()))
+        sets = _list_places(writing.sets)
+        return PublisherFields(publish.node, publish.path, publish.line, sets, writing.unknown, lengths)
 
 
 def _list_places(found: dict[Path, ReadAt]) -> tuple[FieldAt, ...]:

@@ -14,7 +14,7 @@ from ...facts.cpp.names import split_at_commas
 from ...facts.flow import Assignment, FlowCall, FlowExpr
 from .code import FlowCode, Fn, Variable, get_outer, get_tail
 from .frameworks import FrameworkRow, Frameworks, Spot
-from .types import Cls, FlowType, parse_flow_type, split_name
+from .types import Cls, FlowType, is_pointer, parse_flow_type, split_name
 
 # Names that mean something else in most code: their receiver has to be known to be of the framework.
 _COMMON = frozenset(
@@ -382,7 +382,10 @@ def _make_call(
 
 def _list_nested(value: FlowExpr, depth: int = 0) -> list[FlowExpr]:
     if value.kind == "make":
-        return [value]
+        # `boost::shared_ptr<T> x(new T(...))` makes a T.
+        inner = value.parts[0] if len(value.parts) == 1 else None
+        held = inner is not None and inner.kind == "make" and inner.text and is_pointer(value.text)
+        return [inner] if inner is not None and held else [value]
     found: list[FlowExpr] = []
     for part in value.parts if depth < 3 and value.kind in ("call", "choice", "bind", "list") else ():
         if part.parts or part.kind == "make":

@@ -40,8 +40,8 @@ class Fn:
     objects that it makes."""
 
     __slots__ = (
-        "assigned", "facts", "heads", "identities", "is_lambda", "locals", "made", "name", "owner", "place", "scope",
-        "source", "targets",
+        "_around", "_calls", "_lines", "assigned", "facts", "heads", "identities", "is_lambda", "locals", "made",
+        "name", "owner", "place", "scope", "source", "targets",
     )  # fmt: skip
 
     def __init__(self, source: CodeFile, facts: FlowFunction):
@@ -68,6 +68,35 @@ class Fn:
         # What a module of Python assigns is everybody's in it.
         if python:
             self.locals = self.locals.difference(facts.outside) if facts.name else set()
+        self._around: dict[int, tuple[int, ...]] = {}
+        self._lines: dict[int, set[int]] | None = None
+        self._calls: dict[str, list[FlowCall]] | None = None
+
+    def list_guards_around(self, guard: int) -> tuple[int, ...]:
+        """A guard, by its place, and those around it, the nearest first."""
+        known = self._around.get(guard)
+        if known is None:
+            found: list[int] = []
+            outer = guard
+            while 0 <= outer < len(self.facts.guards) and len(found) < 64:
+                found.append(outer)
+                outer = self.facts.guards[outer].outer
+            known = self._around[guard] = tuple(found)
+        return known
+
+    def collect_guards(self, line: int) -> Collection[int]:
+        """The guards, by their places, that calls and assignments on a line are under, -1 for none."""
+        if self._lines is None:
+            self._lines = {}
+            for row in (*self.facts.calls, *self.facts.assignments):
+                self._lines.setdefault(row.line, set()).add(row.guard)
+        return self._lines.get(line, ())
+
+    def list_calls(self, callee: str) -> Sequence[FlowCall]:
+        """The calls of a callee as it is written, in order."""
+        if self._calls is None:
+            self._calls = group_pairs((call.callee, call) for call in self.facts.calls)
+        return self._calls.get(callee, ())
 
     def forget(self) -> None:
         """Drops what rests on the bodies of other functions."""
@@ -835,7 +864,7 @@ class FlowCode:
         known = fn.targets.get(callee)
         if known is None:
             last = get_tail(callee)
-            if last not in self.by_tail and last not in self.classes:
+            if last not in self.by_tail and last not in self.classes and last not in self._lambda_names:
                 return []
             known = self._find_targets(callee, fn, depth)
             if depth == 0:
@@ -855,13 +884,16 @@ class FlowCode:
                 return self.find_method(cls, last)
             wanted = split_name(meant)
             found = [f for f in candidates or () if not f.facts.owner and split_name(f.name)[-len(wanted) :] == wanted]
-            return self._select_nearest(found, fn)
+            return self._select_nearest(found, fn) or self._select_only(found, wanted)
         for one in self.list_enclosing_chain(fn):
             local = self.by_name.get(
                 (fn.source.path, f"{one.name}{'::' if fn.source.facts.language == 'cpp' else '.'}{last}")
             )
             if local is not None:
                 return [local]
+            kept = self._list_kept_lambdas(last, one)
+            if kept:
+                return kept
         if fn.source.facts.language == "cpp":
             owner = self.find_owner(fn)
             if owner is not None:
@@ -871,6 +903,20 @@ class FlowCode:
         else:
             return self.list_defined(last, fn.source, fn.scope)
         return self._select_nearest([f for f in candidates or () if not f.facts.owner and f.name], fn)
+
+    @cached_property
+    def _lambda_names(self) -> frozenset[str]:
+        """The names of variables that lambdas are kept in."""
+        rows = (each for fn in self.functions for each in fn.facts.assignments)
+        return frozenset(each.target for each in rows if each.value.kind == "lambda" and each.target.isidentifier())
+
+    def _list_kept_lambdas(self, name: str, fn: Fn) -> list[Fn]:
+        """The lambdas that a local variable of a function is, when it is nothing else."""
+        rows = fn.assigned.get(name, ()) if name in self._lambda_names and name in fn.locals else ()
+        if any(each.value.kind != "lambda" for each in rows):
+            return []
+        found = (self.by_name.get((fn.source.path, each.value.text)) for each in rows)
+        return [one for one in found if one is not None]
 
     def _list_called_methods(self, receiver: str, name: str, fn: Fn, depth: int) -> list[Fn]:
         if receiver in ("this", "super()", "super"):
@@ -920,10 +966,15 @@ class FlowCode:
                 return near
         return []
 
+    def _select_only(self, found: list[Fn], name: tuple[str, ...]) -> list[Fn]:
+        """The functions of another package in C++ that a whole name means, where one file alone has them."""
+        same = [f for f in found if split_name(f.name) == name and f.source.facts.language == "cpp"]
+        return same if len({f.source.path for f in same}) == 1 else []
+
     @cached_property
     def callers(self) -> dict[Fn, list[tuple[Fn, FlowCall]]]:
         """Calls that reach a function of the code, by the function."""
-        calls = self.list_calls_named(self.by_tail.keys() | self.classes.keys())
+        calls = self.list_calls_named(self.by_tail.keys() | self.classes.keys() | self._lambda_names)
         reached = (
             (target, (fn, call))
             for fn, call in calls

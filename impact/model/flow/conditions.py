@@ -146,6 +146,8 @@ class ConditionReader:
             inner = node.args[0]
             if node.func.id == "len":
                 return self._measure(inner)
+        elif isinstance(node, ast.Call) and _asks_for_bool(node):
+            return self._evaluate_bool(node.args[0])
         elif isinstance(node, ast.Subscript):
             ask, inner, given = (lambda text, place: text[place]), node.value, [node.slice]
         arguments = [self._evaluate(one) for one in given] if ask is not None else []
@@ -162,12 +164,29 @@ class ConditionReader:
                 return None
         return found
 
+    def _evaluate_bool(self, node: ast.expr) -> _Known | None:
+        """Whether what an expression is worth is a bool."""
+        values = self._evaluate(node) or []
+        return [(isinstance(value, bool) or value in _TRUTH, hows) for value, hows in values] or None
 
     def _measure(self, node: ast.expr) -> _Known | None:
         """How long a text is."""
         values = self._evaluate(node) or []
         found = [(self.measure(value) if isinstance(value, str) else None, hows) for value, hows in values]
         return None if not found or any(length is None for length, _ in found) else found
+
+
+def is_truth(text: str, is_cpp: bool) -> bool:
+    """Whether an expression is a comparison or a negation, which gives true or false."""
+    node = _parse_guard("if", text, is_cpp)
+    negation = ast.Invert if is_cpp else ast.Not
+    return isinstance(node, ast.Compare) or (isinstance(node, ast.UnaryOp) and isinstance(node.op, negation))
+
+
+def _asks_for_bool(node: ast.Call) -> bool:
+    """Whether a call is `isinstance(..., bool)`."""
+    names = [one.id for one in (node.func, *node.args[1:]) if isinstance(one, ast.Name)]
+    return names == ["isinstance", "bool"] and len(node.args) == 2
 
 
 def _combine(every: Iterator[tuple[bool | None, frozenset[How]]]) -> DecidedCondition:

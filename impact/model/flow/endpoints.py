@@ -5,6 +5,7 @@ What belongs to which node, and what its names become there, is told by nodes.py
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import cached_property
 from typing import Any, NamedTuple, get_args
@@ -86,6 +87,13 @@ def _feeds(kept: tuple[Fn, FlowCall | FlowExpr]) -> bool:
         return given.kind in ("make", "list", "call")
     last = get_tail(given.callee)
     return last not in _CONNECTS and (last != "registerCallback" or "." not in given.callee)
+
+
+def _is_in_order(value: FlowExpr) -> bool:
+    """Whether a callback takes what it is called with in that order: a bind may say otherwise."""
+    names = [get_tail(part.text) for part in value.parts] if value.kind == "bind" else []
+    numbers = [int(name[1:]) for name in names if re.fullmatch(r"_\d+", name)]
+    return numbers == list(range(1, len(numbers) + 1))
 
 
 def _list_words(value: FlowExpr) -> Iterator[str]:
@@ -543,6 +551,47 @@ class Sites:
         return None
 
     @cached_property
+    def _connected(self) -> dict[Variable, list[tuple[Fn, FlowCall]]]:
+        """The calls that connect filters to what joins them."""
+        found: dict[Variable, list[tuple[Fn, FlowCall]]] = {}
+        for fn, call in self.code.list_calls_named(_CONNECTS):
+            if "." in call.callee:
+                joint = self.code.identify(call.callee.rpartition(".")[0], fn)
+                found.setdefault(joint, []).append((fn, call))
+        return found
+
+    @cached_property
+    def joined_filters(self) -> list[tuple[Variable, ...]]:
+        """Subscribers of filters that are given to one synchronizer, in their order."""
+        code = self.code
+        sites = [one for one in self.endpoints if one.role == "subscriber" and not one.use.row.callback]
+        filters = {self._find_variable(one.use) for one in sites} - {None}
+        straight: dict[Variable, bool] = {}
+        for fn, call in code.list_calls_named(("registerCallback",)):
+            name = call.callee.rpartition(".")[0]
+            if name:
+                joint = code.identify(name, fn)
+                straight[joint] = straight.get(joint, True) and all(map(_is_in_order, call.arguments[:1]))
+        found: list[tuple[Variable, ...]] = []
+        for joint in straight:
+            if not straight[joint]:
+                continue
+            for fn, given in (*self._connected.get(joint, ()), *filter(_feeds, code.list_kept(joint))):
+                arguments = given.arguments if isinstance(given, FlowCall) else given.parts
+                row = tuple(each for each in self._list_named(arguments, fn) if each in filters)
+                if row:
+                    found.append(row)
+        return found
+
+    def find_position(self, site: Site) -> tuple[int, int] | None:
+        """Which of the messages that come through a synchronizer is a subscriber's, and of how many; None where it is
+        not known, or not one place."""
+        variable = self._find_variable(site.use)
+        rows = [row for row in self.joined_filters if variable in row]
+        places = {(row.index(variable), len(row)) for row in rows if row.count(variable) == 1}
+        return next(iter(places)) if variable is not None and len(places) == 1 and rows else None
+
+    @cached_property
     def joins(self) -> dict[Variable, list[Fn]]:
         """Filters to the callbacks that get what comes through them, synchronizers and caches in between."""
         code = self.code
@@ -551,11 +600,7 @@ class Sites:
             receiver = call.callee.rpartition(".")[0]
             if receiver and call.arguments:
                 registered.setdefault(code.identify(receiver, fn), []).extend(self.list_bodies(call.arguments[0], fn))
-        connected: dict[Variable, list[tuple[Fn, FlowCall]]] = {}
-        for fn, call in code.list_calls_named(_CONNECTS) if registered else ():
-            if "." in call.callee:
-                joint = code.identify(call.callee.rpartition(".")[0], fn)
-                connected.setdefault(joint, []).append((fn, call))
+        connected = self._connected if registered else {}
         found: dict[Variable, list[Fn]] = {}
         for joint, bodies in registered.items():
             queue, seen = [joint], {joint}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
@@ -13,12 +13,12 @@ from msgspec import structs
 from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ....edges.reach import walk
-from ...facts.flow import FlowExpr, FlowFile, Guard
+from ...facts.flow import FlowCall, FlowExpr, FlowFile, Guard
 from ..launch.result import EMPTY, Launched, ShareLine, Started
 from ..launch.text import LaunchText
 from . import nodes as programs_of
 from .calls import FOREIGN, Calls, FrameworkCall
-from .code import CodeFile, FlowCode, Fn, get_tail, list_made
+from .code import CodeFile, FlowCode, Fn, find_argument, get_tail, list_made
 from .defined import DefinedInterfaces
 from .endpoints import Site, Sites, Statement, unparse
 from .frameworks import Frameworks, load_frameworks
@@ -40,11 +40,10 @@ from .graph import (
     Way,
 )
 from .loads import Loaded, list_loaded
-from .names import NameRefused, is_open, make_open_part, normalise, resolve_ros1_name, resolve_ros2_name
+from .names import NameRefused, is_open, join_name, make_open_part, normalise, resolve_ros1_name, resolve_ros2_name
 from .nodes import BuiltPackage, CodeReach, StartableProgram
 from .objects import NodeObjects, make_key
 from .qos import apply_overrides, find_qos, list_overridable
-from .reaching import list_guards_around
 from .started import Instance, make_instance
 from .types import FlowType, parse_flow_type
 from .values import ASKING, FlowValue, FlowValues, spell_condition
@@ -55,6 +54,7 @@ _OVERRIDES = re.compile(r"qos_overrides\.").match
 _PASSED = "something that runs passes the name"
 _MOST_WAYS = 16
 _DEEPEST = 10
+_DEEPEST_GIVEN = 3
 _TRIGGERS = {
     "subscriber": "subscriber", "server": "service", "action server": "action", "client": "service",
     "action client": "action", "publisher": "unknown",
@@ -62,10 +62,17 @@ _TRIGGERS = {
 
 
 class CallWay(Way, frozen=True):
-    """A way to a function. functions: those that it runs through before it, outermost first; of several ways with the
-    same guards, those of one."""
+    """A way to a function. steps: the functions that it runs through before it, outermost first, each with the call
+    that leads on (None for what only stands in the function); of several ways with the same guards that give the same
+    for what guards ask of parameters, those of one. times: how many ways these are."""
 
-    functions: tuple[str, ...] = ()
+    steps: tuple[tuple[Fn, FlowCall | None], ...] = ()
+    times: int = 1
+
+    @property
+    def functions(self) -> tuple[str, ...]:
+        """The names of the functions."""
+        return tuple(fn.name for fn, _ in self.steps)
 
 
 class Running(NamedTuple):
@@ -140,6 +147,8 @@ class Join:
         found: list[Running] = []
         for program in programs_of.list_programs(self.code, self.built, self._find_kinds):
             functions, classes = self._find_reached(program)
+            if program.kind == "plugin":
+                functions, classes = self._leave_out_nodes(program, functions, classes)
             named = [use for use in self.calls.select_uses("node") if use.fn in functions]
             node, use = self._make_node(program, named, self.values.run(functions))
             one = Running(program, node, functions, classes, self.values)
@@ -159,6 +168,23 @@ class Join:
         named = self.code.classes.get(get_tail(program.plugin), ())
         cls = next((one for one in named if one.source.path == program.path), None)
         return self.reach.find_reached(program.roots, [cls] if cls is not None else [], cut=cut)
+
+    def _leave_out_nodes(
+        self, program: StartableProgram, functions: set[Fn], classes: set[str]
+    ) -> tuple[set[Fn], set[str]]:  # fmt: skip
+        """What a plugin reaches without what it asks of nodes that it is given: the program that makes them runs that.
+        classes: that it makes objects of, by key."""
+        given = {
+            fn: Fn(fn.source, structs.replace(fn.facts, calls=(), assignments=()))
+            for fn in functions
+            if (cls := self.code.find_owner(fn)) is not None
+            and cls.key not in classes
+            and "node" in self._find_kinds(cls)
+        }
+        if not given:
+            return functions, classes
+        left, classes = self._find_reached(program, given)
+        return left - given.keys(), classes
 
     def _select_open(self, parts: list[Running]) -> list[Running]:
         """Of the nodes that a program is those that it makes where the launch closes branches; the first where it makes
@@ -187,7 +213,7 @@ class Join:
             }
             if closed:
                 facts = fn.facts
-                shut = {row for row in range(len(facts.guards)) if not closed.isdisjoint(list_guards_around(fn, row))}
+                shut = {row for row in range(len(facts.guards)) if not closed.isdisjoint(fn.list_guards_around(row))}
                 calls = tuple(call for call in facts.calls if call.guard not in shut)
                 assignments = tuple(each for each in facts.assignments if each.guard not in shut)
                 cut[fn] = Fn(fn.source, structs.replace(facts, calls=calls, assignments=assignments))
@@ -232,7 +258,7 @@ class Join:
             rows = (*fn.facts.calls, *fn.facts.assignments) if asking else ()
             leading |= {row.guard for row in rows if row.guard >= 0 and row.line in lines}
             leading.update(nodes.get(fn, ()))
-            around = {place for guard in leading for place in list_guards_around(fn, guard)}
+            around = {place for guard in leading for place in fn.list_guards_around(guard)}
             if not asking.isdisjoint(around):
                 found[fn] = sorted(asking & around)
         return found
@@ -259,11 +285,14 @@ class Join:
             node = structs.replace(running.node, id=f"{running.node.id}{one.name}", name=one.name)
             yield running._replace(node=node, objects=one.keys - shared, values=one.values, fixed=one.fixed)
 
-    def runs(self, running: Running, keys: frozenset[str]) -> bool:
-        """Whether a node runs a use in one of its functions. keys: of the node objects that the use is made on."""
-        if running.objects is None or keys & running.objects:
+    def runs(self, running: Running, use: FrameworkCall, through: Sequence[FrameworkCall] = ()) -> bool:
+        """Whether a node runs a use in one of its functions. through: the uses that make what it is called on, where it
+        does not tell itself on which node it is made."""
+        if running.objects is None:
             return True
-        return running.others is not None and not keys & running.others
+        keys = frozenset().union(*(self.objects.find_keys(one, running.functions) for one in through))
+        keys = keys or self.objects.find_keys(use, running.functions)
+        return bool(keys & running.objects) or (running.others is not None and not keys & running.others)
 
     def find_started(self, launch: Launched) -> tuple[list[Running], list[Unresolved]]:
         """The nodes that a launch starts, under the names it gives them; and the starts that the code does not have."""
@@ -277,6 +306,8 @@ class Join:
         for start in launch.started:
             at = self._locate(start.at)
             if start.kind == "process":
+                if not start.package.value or not self._select_fitting(start):
+                    missing.append(Unresolved("started command", "it may be a node", *at, start.executable.shown))
                 continue
             what = start.plugin.value or start.executable.value
             if what is None:
@@ -482,7 +513,7 @@ class Join:
             led = self._walk_callers(caller, functions, depth + 1, here)
             goes_round = goes_round or not led
             for way in led:
-                found.append(CallWay(way.trigger, (*way.guards, *own), (*way.functions, caller.name)))
+                found.append(CallWay(way.trigger, (*way.guards, *own), (*way.steps, (caller, call)), way.times))
                 if len(found) >= _MOST_WAYS:
                     return found
         if not found and goes_round and seen:
@@ -491,12 +522,41 @@ class Join:
             around = self.code.find_enclosing(fn)
             if around is not None:
                 ways = self._walk_callers(around, functions, depth + 1, here)
-                return [CallWay(way.trigger, way.guards, (*way.functions, around.name)) for way in ways]
+                return [CallWay(way.trigger, way.guards, (*way.steps, (around, None)), way.times) for way in ways]
             owner = get_tail(fn.facts.owner)
             starts = fn.name in ("main", "") or (owner and get_tail(fn.name) in (owner, "__init__"))
             kind = "start" if starts else "unknown"
             found.append(CallWay(Trigger(kind, get_tail(fn.name), fn.source.path, fn.facts.line)))
-        return list({(way.trigger, way.guards): way for way in reversed(found)}.values())[::-1]
+        same = group_pairs(((way.trigger, way.guards, self._list_given(way, fn)), way) for way in found)
+        return [structs.replace(ways[0], times=sum(way.times for way in ways)) for ways in same.values()]
+
+    def _list_given(self, way: CallWay, fn: Fn) -> tuple[FlowExpr | None, ...]:
+        """What the calls of a way give for parameters that guards ask for."""
+        called = [*(one for one, _ in way.steps[1:]), fn]
+        return tuple(
+            find_argument(call.arguments, place, name)
+            for (_, call), callee in zip(way.steps, called, strict=False)
+            if call is not None
+            for place, name in self.list_asked_parameters(callee)
+        )
+
+    @cache_method
+    def list_asked_parameters(self, fn: Fn, depth: int = 0) -> tuple[tuple[int, str], ...]:
+        """The parameters, with their places, that may be asked for in the guards of a function, or of one that it hands
+        them to."""
+        rows = fn.facts.guards
+        words = {word for row in rows for word in _WORD.findall(row.text)}
+        if rows:
+            words.update(word for row in fn.facts.assignments for word in _WORD.findall(row.value.text))
+        named = [(place, one.name) for place, one in enumerate(fn.facts.parameters)]
+        handed = {one.text for call in fn.facts.calls for one in call.arguments if one.kind == "name"}
+        if depth < _DEEPEST_GIVEN and any(name in handed and name not in words for _, name in named):
+            for call in fn.facts.calls:
+                for target in self.code.list_targets(call.callee, fn):
+                    asked = self.list_asked_parameters(target, depth + 1) if target is not fn else ()
+                    given = (find_argument(call.arguments, place, name) for place, name in asked)
+                    words.update(one.text for one in given if one is not None and one.kind == "name")
+        return tuple((place, name) for place, name in named if name in words)
 
     def build(self, root: str = "", rev: str = "", unread: Iterable[str] = (), launch: Launched | None = None) -> Graph:
         """The graph of all programs, or of what a launch starts. Without one, code that no program runs belongs to
@@ -549,8 +609,7 @@ class Join:
 
     def _list_publishes(self, owners: _Owners, count: _Count) -> Iterator[Publish]:
         for statement in self.sites.statements:
-            keys = [self.objects.find_keys(site.use) for site in statement.sites]
-            those = owners.list_owners(statement.use, frozenset().union(*keys))
+            those = owners.list_owners(statement.use, [site.use for site in statement.sites])
             if not those:
                 continue
             if not statement.through:  # else counted where it sends
@@ -728,7 +787,8 @@ class Join:
         node = _get_node(owner)
         functions = owner.functions if isinstance(owner, Running) else None
         own = self.list_guards(use.fn, use.call.guard)
-        ways = [Way(way.trigger, (*way.guards, *own)) for way in self.list_ways(use.fn, functions)]
+        led = (Way(way.trigger, (*way.guards, *own)) for way in self.list_ways(use.fn, functions))
+        ways = list(dict.fromkeys(led))
         guards = ways[0].guards if len(ways) == 1 else own
         triggers = tuple(dict.fromkeys(way.trigger for way in ways))
         common = {
@@ -780,14 +840,14 @@ class _Owners:
             (number, one) for one in running for number in one.functions
         )
 
-    def list_owners(self, use: FrameworkCall, keys: frozenset[str] = frozenset()) -> list[Owner]:
+    def list_owners(self, use: FrameworkCall, through: Sequence[FrameworkCall] = ()) -> list[Owner]:
         """Who runs a use: nodes that reach it, else those that are built from its file, else its library, or none.
-        keys: of the node objects that it is made on, where it does not tell itself."""
-        keys = keys or self.join.objects.find_keys(use)
+        through: as for Join.runs()."""
         found = self._by_function.get(use.fn, [])
         if self.launched or found:
-            return [one for one in found if self.join.runs(one, keys)]
-        built = [one for one in self.running if use.fn.source.path in one.program.files and self.join.runs(one, keys)]
+            return [one for one in found if self.join.runs(one, use, through)]
+        here = (one for one in self.running if use.fn.source.path in one.program.files)
+        built = [one for one in here if self.join.runs(one, use, through)]
         if built:
             return [*built]
         node = self.join.find_library(use.fn)
@@ -838,7 +898,9 @@ def _keep_fixed(
         start = start._replace(name=EMPTY)
     if "namespace" in fixed:
         start = start._replace(namespace=EMPTY)
-        namespace = "/<namespace>" if "below" in fixed and around.value not in (None, "", "/") else namespace
+        if "below" in fixed:
+            above = around.value if around.value is not None else make_open_part(around.shown)
+            namespace = join_name("/" + above.strip("/"), namespace.lstrip("/"))
     return start, namespace
 
 

@@ -180,6 +180,7 @@ def _start(workspace: Workspace, join: Join, followed: Sequence[_Followed]) -> I
     """What launch files start."""
     sources, escapes = InWorkspace(workspace), EscapeAnalysis(workspace, join)
     unknown: dict[str, UnknownReasons] = {}
+    declared = _Declared(join, sources)
     for path, launch in followed:
         running, missing = join.find_started(launch)
         graph = add_bridges(join.build(launch=launch), launch, sources)
@@ -188,7 +189,7 @@ def _start(workspace: Workspace, join: Join, followed: Sequence[_Followed]) -> I
             program = f"{one.program.package}/{one.program.executable or one.program.plugin}"
             if program not in unknown:
                 unknown[program] = escapes.find_unknown_reasons(one)
-            starts.append(_start_node(join, launch, sources, one, program, unknown[program]))
+            starts.append(_start_node(join, launch, sources, one, program, unknown[program], declared))
         here = {id(one.instance.started) for one in running if one.instance is not None}
         others = [started for started in launch.started if id(started) not in here]
         elsewhere = {
@@ -268,7 +269,8 @@ def is_launch(path: str) -> bool:
 
 
 def _start_node(
-    join: Join, launch: Launched, sources: InWorkspace, one: Running, program: str, reasons: UnknownReasons
+    join: Join, launch: Launched, sources: InWorkspace, one: Running, program: str, reasons: UnknownReasons,
+    declared: _Declared,
 ) -> LaunchedNode:  # fmt: skip
     instance = one.instance
     assert instance is not None
@@ -279,12 +281,29 @@ def _start_node(
     return LaunchedNode(
         one.node.id, program, one.program.package, tuple(sorted(names)), tuple(sorted(asked)), renamed, given,
         reasons.names, reasons.parameters, instance.uncertain,
-        tuple(_list_refused(join, launch, sources, one, instance)),
+        tuple(_list_refused(join, launch, sources, one, instance, declared)),
     )  # fmt: skip
 
 
+class _Declared:
+    """What values the parameters of programs take, asked for once of a program that runs the same functions."""
+
+    def __init__(self, join: Join, sources: InWorkspace):
+        self._join, self._sources = join, sources
+        # With who runs them, so that nothing else comes by the same id().
+        self._known: dict[tuple, tuple[Running, dict[str, ParameterTerms]]] = {}
+
+    def list_terms(self, one: Running) -> dict[str, ParameterTerms]:
+        """The parameters that a program declares, as list_terms() says."""
+        parts = (None if part is None else frozenset(part) for part in (one.objects, one.others))
+        key = id(one.functions), *parts
+        if key not in self._known:
+            self._known[key] = one, list_terms(self._join, one, list_libraries(self._sources.workspace))
+        return self._known[key][1]
+
+
 def _list_refused(
-    join: Join, launch: Launched, sources: InWorkspace, one: Running, instance: Instance
+    join: Join, launch: Launched, sources: InWorkspace, one: Running, instance: Instance, declared: _Declared
 ) -> Iterator[RefusedValue]:
     """The values that a node is given and does not take."""
     if instance.started.generation == 1:
@@ -292,11 +311,11 @@ def _list_refused(
         return
     if not instance.started.settings:
         return
-    terms = list_terms(join, one, list_libraries(sources.workspace))
-    for given in _collect_values(sources, instance.started, instance.name).values() if terms else ():
-        declared = find_terms(terms, given.name)
-        if declared is not None:
-            yield from find_refused(given, declared)
+    every = declared.list_terms(one)
+    for given in _collect_values(sources, instance.started, instance.name).values() if every else ():
+        terms = find_terms(every, given.name)
+        if terms is not None:
+            yield from find_refused(given, terms)
 
 
 def _list_clamped(
@@ -385,7 +404,7 @@ def _list_names(join: Join, one: Running, instance: Instance) -> Iterator[str]:
     """The full names that a node's code uses, before remapping."""
     bare = one._replace(instance=instance._replace(remaps=()))
     for site in join.sites.endpoints:
-        if site.use.fn in one.functions and join.runs(one, join.objects.find_keys(site.use)):
+        if site.use.fn in one.functions and join.runs(one, site.use):
             values = site.names
             if not site.implied:
                 values = join.sites.list_names(site.use, site.prefix, one.values)
@@ -398,7 +417,7 @@ def _collect_parameters(join: Join, one: Running, instance: Instance) -> set[str
     tell its namespace."""
     found: set[str] = set()
     for use in join.calls.select_uses("parameter"):
-        if use.fn in one.functions and join.runs(one, join.objects.find_keys(use)):
+        if use.fn in one.functions and join.runs(one, use):
             names = {value.text for value in join.list_parameter_names(use) if value.text}
             if instance.started.generation != 1:
                 found |= names

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence, Set
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from ....edges.groups import group_pairs
-from ...facts.flow import FlowExpr
+from ...facts.flow import FlowCall, FlowExpr
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_parameter, get_tail
 from .graph import Role
 from .names import join_name, normalise
 from .types import Cls, FlowType
 from .values import NAMESPACE, FlowValues
+
+_Row = TypeVar("_Row", bound=tuple[Any, ...])
 
 _DEEPEST = 6
 _OPEN = "/<namespace>"
@@ -39,14 +41,29 @@ class NodeObject(NamedTuple):
     fixed: frozenset[str] = frozenset()
 
 
+class _Given(NamedTuple):
+    """What is given to a node. fn, line: where that is written; way: the call through which that function is reached,
+    by the function."""
+
+    value: FlowExpr
+    fn: Fn
+    line: int
+    way: tuple[tuple[Fn, FlowCall], ...] = ()
+
+    def list_texts(self, values: FlowValues) -> set[str | None]:
+        """What it may be, None for what is not known."""
+        return {one.text for one in values.limit_to_calls(dict(self.way)).evaluate(self.value, self.fn, self.line)}
+
+
 class NodeObjects:
     """Asks a body of code for its node objects. values: what expressions are worth in it; ros: the generation where a
     framework does not tell."""
 
     def __init__(self, calls: Calls, values: FlowValues, ros: int):
         self.calls, self.code, self.values, self.ros = calls, calls.code, values, ros
-        # With the use, so that nothing else comes by the same id().
-        self._known: dict[int, tuple[FrameworkCall, frozenset[str]]] = {}
+        # By the id() of the use, which is kept for that: the functions that it rests on, those of them that ran, and
+        # the keys then.
+        self._known: dict[int, tuple[FrameworkCall, list[tuple[frozenset[Fn], frozenset[Fn], frozenset[str]]]]] = {}
 
     def list_objects(self, functions: Collection[Fn]) -> list[NodeObject]:
         """The node objects of ROS 2 that some functions make."""
@@ -139,7 +156,7 @@ class NodeObjects:
             full, fixed = f"/<{get_tail(cls.name)}>", frozenset[str]()
             if own is not None:
                 # A derived class may hand the options to the one that names it.
-                telling = next((use for use in uses if _find_remapped(use, "__ns:=") is not None), own[0])
+                telling = next((use for use in uses if self._find_remapped(use, "__ns:=") is not None), own[0])
                 full, fixed = self.join_namespace(telling, own[1], values), self.find_fixed(telling, values)
             by_name.setdefault((full, fixed), []).extend([row] if row is not None else [])
         for (name, fixed), made in by_name.items():
@@ -181,102 +198,148 @@ class NodeObjects:
 
     def join_namespace(self, use: FrameworkCall, own: str, values: FlowValues) -> str:
         """The full name of a node by its own name and the namespace that its code gives, if any."""
-        remapped = _find_remapped(use, "__ns:=")
+        remapped = self._find_remapped(use, "__ns:=")
         if remapped is not None:
-            texts = self._list_texts(remapped, use, values)
+            texts = remapped.list_texts(values)
             spaces = {normalise("/" + (text or _OPEN).replace(NAMESPACE, "/")) for text in texts}
             return join_name(spaces.pop() if len(spaces) == 1 else _OPEN, own)
         written = self.calls.find_argument(use, use.row.namespace) if use.row.namespace else None
         if written is None:
             return join_name("/", own)
-        texts = self._list_texts(written, use, values)
+        texts = _Given(written, use.fn, use.call.line).list_texts(values)
         space = texts.pop() if len(texts) == 1 else None
         return join_name(_OPEN if space is None else "/" + space.lstrip("/"), own)
 
     def find_fixed(self, use: FrameworkCall, values: FlowValues) -> frozenset[str]:
         """What the options of a node say of it, whatever a launch says, as NodeObject.fixed has it."""
-        remapped = _find_remapped(use, "__ns:=")
-        found = {"name"} if _find_remapped(use, "__node:=") is not None else set()
+        remapped = self._find_remapped(use, "__ns:=")
+        found = {"name"} if self._find_remapped(use, "__node:=") is not None else set()
         if remapped is not None:
-            below = any(NAMESPACE in (one or "") for one in self._list_texts(remapped, use, values))
+            below = any(NAMESPACE in (one or "") for one in remapped.list_texts(values))
             found |= {"namespace", "below"} if below else {"namespace"}
         return frozenset(found)
 
-    def _list_texts(self, value: FlowExpr, use: FrameworkCall, values: FlowValues) -> set[str | None]:
-        return {one.text for one in values.evaluate(value, use.fn, use.call.line)}
+    def _find_remapped(self, use: FrameworkCall, rule: str) -> _Given | None:
+        """What the arguments among the options of a node remap to by a rule, also where a function of the code makes
+        these options; None where they have none such."""
+        for argument in use.call.arguments:
+            found = _find_rule(argument, rule)
+            if found is not None:
+                return _Given(found, use.fn, use.call.line)
+        for argument in use.call.arguments:
+            targets = self.code.list_targets(argument.text, use.fn) if argument.kind == "call" else []
+            calls = [call for call in use.fn.list_calls(argument.text) if call.arguments == argument.parts]
+            if len(targets) != 1 or not calls:
+                continue
+            target = targets[0]
+            written = [(row.guard, row.line, one) for row in target.facts.calls for one in row.arguments]
+            written += [(each.guard, each.line, each.value) for each in target.facts.assignments]
+            for guard, line, value in written:
+                found = _find_rule(value, rule)
+                if found is not None:
+                    # Whether it is given hangs on a condition.
+                    sure = found if guard < 0 else FlowExpr("other")
+                    return _Given(sure, target, line, ((target, calls[0]),))
+        return None
 
-    def find_keys(self, use: FrameworkCall) -> frozenset[str]:
-        """What tells on which node objects a use is made, as NodeObject.keys has it; empty where nothing does."""
-        known = self._known.get(id(use))
-        if known is None:
-            known = self._known[id(use)] = use, frozenset(self._find_keys(use))
-        return known[1]
-
-    def _find_keys(self, use: FrameworkCall) -> set[str]:
-        if use.row.does == "node":
-            cls = self._find_named_class(use)
-            return {cls.key if cls is not None else make_key(use.fn, use.call.line)}
-        receiver = "" if use.row.does == "publish" else self.calls.get_receiver(use)
-        given = next((one for one in use.call.arguments if self.calls.is_node(one, use.fn)), None)
-        for value in (FlowExpr("name", receiver) if receiver else None, given):
-            keys = self._find_traced(value, use.fn, frozenset()) if value is not None else set()
-            if keys:
+    def find_keys(self, use: FrameworkCall, functions: Set[Fn]) -> frozenset[str]:
+        """What tells on which node objects a use is made where some functions run, as NodeObject.keys has it; empty
+        where nothing does."""
+        _, rows = self._known.setdefault(id(use), (use, []))
+        for rests_on, ran, keys in rows:
+            if rests_on & functions == ran:
                 return keys
-        return self._find_own_key(use.fn)
+        trace = _Trace(self, functions)
+        keys = frozenset(trace.find_keys(use))
+        rests_on = frozenset(trace.rests_on)
+        rows.append((rests_on, rests_on & functions, keys))
+        return keys
 
-    def _find_own_key(self, fn: Fn) -> set[str]:
+    def find_own_key(self, fn: Fn) -> set[str]:
+        """The key of the class that a function belongs to; nothing for others."""
         owner = self.code.find_owner(fn)
         return {owner.key} if owner is not None else set()
 
-    def _find_traced(self, value: FlowExpr, fn: Fn, seen: frozenset[Variable]) -> set[str]:
-        """The keys of what an expression is, where it is a node object."""
-        if value.kind == "call" and not value.parts and get_tail(value.text) in _HANDED and "." in value.text:
-            value = FlowExpr("name", value.text.rpartition(".")[0])
-        text = value.text.removesuffix("()")
-        if text in _ITSELF or (value.kind == "other" and "this" in text):
-            return self._find_own_key(fn)
-        if value.kind in ("make", "call"):
-            return self._find_class_key(self.code.resolve_type(value, fn), fn)
-        if value.kind != "name" or len(seen) > _DEEPEST:
-            return set()
-        variable = self.code.identify(text, fn)
-        if variable in seen:
-            return set()
-        seen |= {variable}
-        keys: set[str] = set()
-        for writer, each in self.code.list_writes(variable):
-            made = make_key(writer, each.line)
-            keys |= {made} if made in self._made else self._find_traced(each.value, writer, seen)
-        for caller, call in self.code.list_results(variable):
-            made = make_key(caller, call.line)
-            keys |= {made} if made in self._made else set()
-        for one in self.code.list_enclosing_chain(fn) if variable.kind == "local" and not keys else ():
-            place = find_parameter(one, variable.name)
-            if place is not None:
-                for given, giver in self.code.list_given(one, place[0], variable.name):
-                    keys |= self._find_traced(given, giver, seen)
-                break
-        return keys or self._find_class_key(self.code.resolve_variable_type(variable, fn), fn)
+    def find_named_key(self, use: FrameworkCall) -> str:
+        """The key of the node that a use names."""
+        cls = self._find_named_class(use)
+        return cls.key if cls is not None else make_key(use.fn, use.call.line)
 
     @cached_property
-    def _made(self) -> set[str]:
+    def made(self) -> set[str]:
         """The places where nodes are made that are of no class of the code."""
         return {make_key(use.fn, use.call.line) for use in self._named if self._find_named_class(use) is None}
 
-    def _find_class_key(self, kind: FlowType, fn: Fn) -> set[str]:
+    def find_class_key(self, kind: FlowType, fn: Fn) -> set[str]:
         """The key for any object of a class of the code, if its objects are nodes."""
         cls = self.code.find_class_of(kind, fn) if kind.name else None
         return {f"any {cls.key}"} if cls is not None and self._is_node(cls) else set()
 
 
+class _Trace:
+    """One search for the node objects that a use is made on. functions: those that run: of several that give or write
+    a node, the ones among these count, where there are any. rests_on: the functions of which that was asked."""
+
+    def __init__(self, objects: NodeObjects, functions: Set[Fn]):
+        self._objects, self._code, self._functions = objects, objects.code, functions
+        self.rests_on: set[Fn] = set()
+
+    def find_keys(self, use: FrameworkCall) -> set[str]:
+        """The keys of the node objects."""
+        objects = self._objects
+        if use.row.does == "node":
+            return {objects.find_named_key(use)}
+        receiver = "" if use.row.does == "publish" else objects.calls.get_receiver(use)
+        given = next((one for one in use.call.arguments if objects.calls.is_node(one, use.fn)), None)
+        for value in (FlowExpr("name", receiver) if receiver else None, given):
+            keys = self._follow(value, use.fn, frozenset()) if value is not None else set()
+            if keys:
+                return keys
+        return objects.find_own_key(use.fn)
+
+    def _follow(self, value: FlowExpr, fn: Fn, seen: frozenset[Variable]) -> set[str]:
+        """The keys of what an expression is, where it is a node object."""
+        objects, code = self._objects, self._code
+        if value.kind == "call" and not value.parts and get_tail(value.text) in _HANDED and "." in value.text:
+            value = FlowExpr("name", value.text.rpartition(".")[0])
+        text = value.text.removesuffix("()")
+        if text in _ITSELF or (value.kind == "other" and "this" in text):
+            return objects.find_own_key(fn)
+        if value.kind in ("make", "call"):
+            return objects.find_class_key(code.resolve_type(value, fn), fn)
+        if value.kind != "name" or len(seen) > _DEEPEST:
+            return set()
+        variable = code.identify(text, fn)
+        if variable in seen:
+            return set()
+        seen |= {variable}
+        keys: set[str] = set()
+        for writer, each in self._select_running(code.list_writes(variable)):
+            made = make_key(writer, each.line)
+            keys |= {made} if made in objects.made else self._follow(each.value, writer, seen)
+        for caller, call in self._select_running(code.list_results(variable)):
+            made = make_key(caller, call.line)
+            keys |= {made} if made in objects.made else set()
+        for one in code.list_enclosing_chain(fn) if variable.kind == "local" and not keys else ():
+            place = find_parameter(one, variable.name)
+            if place is not None:
+                every = [(giver, given) for given, giver in code.list_given(one, place[0], variable.name)]
+                for giver, given in self._select_running(every):
+                    keys |= self._follow(given, giver, seen)
+                break
+        return keys or objects.find_class_key(code.resolve_variable_type(variable, fn), fn)
+
+    def _select_running(self, rows: Sequence[_Row]) -> Sequence[_Row]:
+        """Of rows that begin with a function those whose function runs; all where none does."""
+        if len(rows) < 2:
+            return rows
+        self.rests_on.update(fn for fn, _ in rows)
+        return [row for row in rows if row[0] in self._functions] or rows
+
+
 def make_key(fn: Fn, line: int) -> str:
     """The key of what is made on a line of a function."""
     return f"{fn.source.path}:{line}"
-
-
-def _find_remapped(use: FrameworkCall, rule: str) -> FlowExpr | None:
-    """What the arguments among the options of a node remap to by a rule; None where they have none such."""
-    return next(filter(None, (_find_rule(one, rule) for one in use.call.arguments)), None)
 
 
 def _find_rule(value: FlowExpr, rule: str) -> FlowExpr | None:

@@ -28,7 +28,7 @@ def list_terms(
     list_libraries() gives them."""
     found: dict[str, ParameterTerms] = {}
     for use in join.calls.select_uses("parameter"):
-        if not use.row.declares or use.fn not in one.functions or not join.runs(one, join.objects.find_keys(use)):
+        if not use.row.declares or use.fn not in one.functions or not join.runs(one, use):
             continue
         names = [value.text for value in join.list_parameter_names(use)]
         for name in names:

@@ -67,6 +67,8 @@ def find_qos(calls: Calls, values: FlowValues, use: FrameworkCall) -> Qos | None
         value = calls.find_argument(use, use.row.queue)
         latch = calls.find_argument(use, use.row.latch) if use.row.latch else None
         depth = _evaluate_number(value, use.fn, values)
+        made = use.fn.assigned.get(latch.text, ()) if latch is not None and latch.kind == "name" else ()
+        latch = made[0].value if len(made) == 1 else latch
         latched = "transient_local" if latch is not None and latch.text in ("true", "True") else ""
         return Qos(durability=latched, depth=depth, written=unparse(value)) if value is not None or latched else None
     value = calls.find_argument(use, use.row.qos) if use.row.qos else None

@@ -103,15 +103,15 @@ class ReachingValues:
 
     def is_counted(self, guard: int) -> bool:
         """Whether what stands under a guard runs once at most for each value that was assigned before."""
-        loops = [each for each in list_guards_around(self.fn, guard) if self.fn.facts.guards[each].kind in LOOPS]
+        loops = [each for each in self.fn.list_guards_around(guard) if self.fn.facts.guards[each].kind in LOOPS]
         return all(self._is_inside(one.guard, loop) for loop in loops for one in self.held)
 
     def _list_conditional(self, guard: int) -> list[int]:
         """The guards of a statement that are not around the place, the nearest first."""
-        return [each for each in list_guards_around(self.fn, guard) if each not in self.around]
+        return [each for each in self.fn.list_guards_around(guard) if each not in self.around]
 
     def _is_inside(self, guard: int, outer: int) -> bool:
-        return outer in list_guards_around(self.fn, guard)
+        return outer in self.fn.list_guards_around(guard)
 
     def _replace(self, guard: int) -> None:
         """Drops what was assigned under a guard, all for -1."""
@@ -139,15 +139,6 @@ class ReachingValues:
                 if h.stays or any(self._is_inside(h.guard, each) for each in branches)
                 or not (self.is_sure(guard) or self._is_inside(h.guard, guard))
             ]  # fmt: skip
-
-
-def list_guards_around(fn: Fn, guard: int) -> list[int]:
-    """A guard of a function, by its place, and those around it."""
-    found: list[int] = []
-    while 0 <= guard < len(fn.facts.guards) and len(found) < 64:
-        found.append(guard)
-        guard = fn.facts.guards[guard].outer
-    return found
 
 
 def _may_hold(test: VariableTest, value: FlowValue) -> bool:

@@ -84,6 +84,13 @@ def parse_flow_type(text: str) -> FlowType:
     return FlowType(name.replace(" ", ""), arguments)
 
 
+def is_pointer(text: str) -> bool:
+    """Whether a type in C++ is a smart pointer: `boost::shared_ptr<T>`, `T::Ptr`."""
+    head, arguments, rest = _split_template(text.strip())
+    last = (rest or head).rpartition("::")[2].strip()
+    return last in (_INNER if rest or not arguments else _POINTERS)
+
+
 def _split_template(text: str) -> tuple[str, tuple[str, ...], str]:
     """`a::b<c, d>::e` as `a::b`, (`c`, `d`), `::e`."""
     start = text.find("<")

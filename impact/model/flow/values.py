@@ -7,17 +7,19 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from functools import cached_property
 from itertools import islice, product
 from operator import itemgetter
+from typing import NamedTuple
 
 from ....edges.groups import group_pairs
 from ...facts.flow import Assignment, FlowCall, FlowExpr, FlowParameter, Guard
+from ...facts.python.flow_expressions import LONGEST_OTHER
 from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail
-from .conditions import ConditionReader, DecidedCondition
+from .conditions import ConditionReader, DecidedCondition, is_truth
 from .graph import How
 from .names import is_open, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
-from .reaching import LOOPS, FlowValue, ReachingValues, list_guards_around
+from .reaching import LOOPS, FlowValue, ReachingValues
 from .types import split_name
 
 NODE, NAMESPACE = "{node}", "{ns}"
@@ -36,6 +38,8 @@ _STEPS_IN_ALL, _STEPS_A_FUNCTION = 150_000, 100
 _FEW_STEPS = 50
 _STEPS_A_CONDITION = 500
 _LONGEST = 10_000
+# Of the values of a variable under the same circumstances those that are kept.
+_MOST_KNOWN = 8
 # Calls that give what they are called on, or their first argument, as a string.
 _SAME = frozenset(
     ("c_str", "str", "as_string", "string_value", "value", "get_parameter_value", "strip", "lstrip", "rstrip", "data",
@@ -58,6 +62,34 @@ _NODE_NAMESPACE = frozenset(("get_namespace", "getNamespace"))
 
 
 _NOT_GIVEN = FlowValue(None, "given", "an argument of the command line that is not given")
+
+
+class _Work:
+    """What the values of a variable rest on while they are worked out. items: what was asked for whether it is being
+    evaluated; lines: functions with lines of which it was asked which guard there is; settings: those that were asked
+    for. is_alone: whether nothing else had a part in it that may be otherwise another time."""
+
+    __slots__ = ("is_alone", "items", "lines", "settings")
+
+    def __init__(self):
+        self.items: set[tuple] = set()
+        self.lines: set[tuple[Fn, int]] = set()
+        self.settings: dict[str, FlowValue | None] = {}
+        self.is_alone = True
+
+
+class _Known(NamedTuple):
+    """Values of a variable that were worked out. items, lines, settings: as in _Work; within and asking: what of these
+    was being evaluated; steps: those that it took; kept: what keeps the ids in its key from being reused."""
+
+    values: list[FlowValue]
+    items: frozenset[tuple]
+    within: frozenset[tuple]
+    lines: frozenset[tuple[Fn, int]]
+    asking: tuple[tuple, ...]
+    settings: dict[str, FlowValue | None]
+    steps: int
+    kept: tuple
 
 
 class FlowValues:
@@ -90,6 +122,11 @@ class FlowValues:
         self.asked: dict[str, FlowValue | None] = {}
         # Decided guards, each with the settings that it rests on and what keeps the ids in its key from being reused.
         self._decided: dict[tuple, list[tuple[dict[str, FlowValue | None], DecidedCondition, tuple]]] = {}
+        # The same where only some functions run, by their id().
+        self._copies: dict[int, FlowValues] = {}
+        # Values of variables, by all that does not show in what they rest on; and what is being worked out.
+        self._known: dict[tuple, list[_Known]] = {}
+        self._works: list[_Work] = []
 
     def apply_launch(
         self, settings: Mapping[str, str], arguments: tuple[str, ...] | None = None, node: str = ""
@@ -103,7 +140,11 @@ class FlowValues:
 
     def run(self, functions: Collection[Fn]) -> FlowValues:
         """The same code where only some functions run: what others pass to them does not count."""
-        return self._make_copy(self.settings, self.arguments, self.way, functions, self.node, self.made)
+        known = self._copies.get(id(functions))
+        if known is None:
+            known = self._make_copy(self.settings, self.arguments, self.way, functions, self.node, self.made)
+            self._copies[id(functions)] = known  # which keeps the functions, so that nothing else comes by the same id
+        return known
 
     def limit_to_calls(self, way: Mapping[Fn, FlowCall]) -> FlowValues:
         """The same code as far as it is reached through some calls, by the function called."""
@@ -118,6 +159,7 @@ class FlowValues:
         for name in ("filled", "declared", "command_line", "origins", "parameter_words"):
             other.__dict__[name] = getattr(self, name)
         other._budget, other.asked, other._decided = self._budget, self.asked, self._decided
+        other._known, other._works = self._known, self._works
         other.find_prefix, other._prefixes = self.find_prefix, self._prefixes
         return other
 
@@ -172,9 +214,20 @@ class FlowValues:
             return  # made empty, and written later
         elif kind == "index" and value.parts:
             yield from self._evaluate_element(value, fn, line, seen)
+        elif kind == "other" and (decided := self._decide_truth(value, fn, line, seen)).holds is not None:
+            yield from _put_under([FlowValue(str(decided.holds))], decided, "")
         else:
             what = value.text or kind
             yield FlowValue(None, "unresolved", f"`{what[:60]}` is not followed")
+
+    def _decide_truth(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> DecidedCondition:
+        """Whether a comparison or negation whose truth is a value holds."""
+        mark = ("truth", value.text)
+        if len(value.text) >= LONGEST_OTHER or not is_truth(value.text, fn.source.facts.language == "cpp"):
+            return DecidedCondition()
+        if self._is_in(mark, seen):
+            return DecidedCondition()
+        return self._decide_guard(Guard("if", value.text, line, _find_guard_before(fn, line)), fn, (*seen, mark))
 
     def _evaluate_fallback(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         """`a or b`: b is there where a may be empty, as a default where it is not known to be."""
@@ -208,7 +261,7 @@ class FlowValues:
 
     def decide_guards(self, fn: Fn, guard: int) -> Iterator[tuple[Guard, DecidedCondition]]:
         """The guards of a function at the place of one of them, innermost first, with whether they hold."""
-        for place in list_guards_around(fn, guard):
+        for place in fn.list_guards_around(guard):
             yield fn.facts.guards[place], self._recall_decided(fn, place)
 
     def _recall_decided(self, fn: Fn, place: int) -> DecidedCondition:
@@ -245,11 +298,12 @@ class FlowValues:
 
         if not seen:
             self._left = _STEPS_A_CONDITION
+            self._note_others()
         return ConditionReader(fn.source.facts.language == "cpp", list_known).decide_guard(guard)
 
     def _find_filling(self, value: FlowExpr, fn: Fn) -> FrameworkCall | None:
         """The use that reads a parameter into a variable, and tells whether it was there; None for all else."""
-        same = (call for call in fn.facts.calls if value.kind == "call" and call.callee == value.text)
+        same = fn.list_calls(value.text) if value.kind == "call" else ()
         call = next((call for call in same if call.arguments == value.parts), None)
         use = self.calls.find_use(fn, call) if call is not None else None
         if use is None or use.row.does != "parameter" or not use.row.variable:
@@ -313,7 +367,7 @@ class FlowValues:
                     return
             puts = {f"{value.text}.{put}" for put in _PUT}
             pushed = [call for call in fn.facts.calls if call.callee in puts]
-            if pushed and variable not in seen:
+            if pushed and not self._is_in(variable, seen):
                 for call in pushed:
                     for argument in call.arguments[:1]:
                         yield from self._evaluate(argument, fn, call.line, (*seen, variable))
@@ -329,7 +383,7 @@ class FlowValues:
             yield from self._evaluate_inner(path.removesuffix("()"), fn, line, seen)
             return
         variable = self.code.identify(path, fn)
-        if variable in seen:
+        if self._is_in(variable, seen):
             return
         for text, how in self.command_line.list_parsed_texts(path, fn, self.arguments) if "." in path else ():
             unknown = FlowValue(None, "given", f"`{path}` is an argument of the command line")
@@ -352,7 +406,7 @@ class FlowValues:
     def _find_written_before(self, path: str, fn: Fn, line: int) -> Assignment | None:
         """The assignment to a member of another object that a line of a function surely comes after, where nothing
         between them names the object; None for none."""
-        around = list_guards_around(fn, _find_guard(fn, line))
+        around = fn.list_guards_around(_find_guard(fn, line))
         rows = [each for each in fn.assigned.get(path, ()) if each.operator == "=" and each.line < line]
         last = max(rows, key=lambda each: each.line, default=None)
         if last is None or (last.guard >= 0 and last.guard not in around) or _mentions(last.value, path):
@@ -383,12 +437,99 @@ class FlowValues:
         of the objects that a member may be of, None for any. line: at which it is asked for, 0 for any. filled_before:
         the line at which it is asked for, also where assignments are not followed in turn: what a parameter was read
         into before has no more of what its object was made with."""
+        key = (variable, fn, origins, line, filled_before, len(seen), self._about)
+        for known in self._known.get(key, ()):
+            if self._holds_again(known, seen):
+                self._left -= known.steps
+                self.asked.update(known.settings)
+                if self._works:
+                    self._note(known.items, known.lines, known.settings)
+                yield from known.values
+                return
+        work, before = _Work(), self._left
+        self._works.append(work)
+        try:
+            values = list(self._follow_variable(variable, fn, seen, origins, line, filled_before))
+        finally:
+            self._works.pop()
+            if self._works:
+                self._note(work.items, work.lines, work.settings)
+                self._works[-1].is_alone &= work.is_alone
+        if work.is_alone and self._left >= 0:
+            within, lines = frozenset(work.items.intersection(seen)), frozenset(work.lines)
+            known = _Known(
+                values, frozenset(work.items), within, lines, _list_asking(seen, lines), work.settings,
+                before - self._left, (self.way, self.within, self.made),
+            )  # fmt: skip
+            rows = self._known.setdefault(key, [])
+            rows.append(known)
+            del rows[:-_MOST_KNOWN]
+        yield from values
+
+    @cached_property
+    def _about(self) -> tuple:
+        """Tells what is evaluated from the same under other circumstances, other than settings."""
+        # No way and no makers are the same in every copy; that no functions run is not that all do.
+        way = frozenset((fn, id(call)) for fn, call in self.way.items())
+        kept = id(self.within), id(self.made) if self.made else 0
+        return self.arguments, self.node, bool(self.settings), way, kept
+
+    def _holds_again(self, known: _Known, seen: tuple) -> bool:
+        """Whether values that were worked out are those of now. seen: what is being evaluated."""
+        return (
+            self._left >= known.steps
+            and known.items.intersection(seen) == known.within
+            and _list_asking(seen, known.lines) == known.asking
+            and all(self.find_setting(name) == value for name, value in known.settings.items())
+        )
+
+    def _note(self, items: Iterable[tuple], lines: Iterable[tuple[Fn, int]], settings: Mapping) -> None:
+        """Notes on what else rests what is being worked out."""
+        work = self._works[-1]
+        work.items.update(items)
+        work.lines.update(lines)
+        work.settings.update(settings)
+
+    def _note_others(self) -> None:
+        """Notes that what is being worked out may be otherwise another time."""
+        for work in self._works:
+            work.is_alone = False
+
+    def _is_in(self, item: tuple, seen: tuple) -> bool:
+        """Whether something is being evaluated."""
+        if self._works:
+            self._works[-1].items.add(item)
+        return item in seen
+
+    def _is_asking(self, guard: Guard, fn: Fn, seen: tuple) -> bool:
+        """Whether it is being worked out if a guard holds."""
+        return self._is_in(("asks", fn, guard.line, guard.outer), seen)
+
+    def _leave_out(self, variable: Variable, seen: tuple) -> tuple:
+        """What is being evaluated without a variable."""
+        self._is_in(variable, seen)
+        if seen.count(variable) > 1:
+            self._note_others()
+        return tuple(one for one in seen if one != variable)
+
+    def _find_guard_of(self, fn: Fn, line: int, seen: tuple) -> int:
+        """The place of the innermost guard of what is asked at a line, -1 for none; where a guard on the line asks, the
+        guard around that one. seen: what is being evaluated."""
+        if self._works:
+            self._works[-1].lines.add((fn, line))
+        asking = _list_asking(seen, ((fn, line),))
+        return asking[-1][3] if asking else _find_guard(fn, line)
+
+    def _follow_variable(
+        self, variable: Variable, fn: Fn, seen: tuple, origins: Origins | None, line: int, filled_before: int
+    ) -> Iterator[FlowValue]:
+        """The same, worked out."""
         written = self.code.list_writes(variable)
         if origins is not None:
             written = [(w, each) for w, each in written if self.origins.may_be_of(each.target, w, origins)]
         rows, given = self._select_given(written)
         own = [each for writer, each in rows if writer is fn and line]
-        around = list_guards_around(fn, _find_guard_of(fn, line, seen)) if line else []
+        around = fn.list_guards_around(self._find_guard_of(fn, line, seen)) if line else ()
         found = ReachingValues(fn, around, lambda path: self.code.identify(path, fn) == variable)
         # What stands before the last that is surely assigned is of no interest.
         turns = _list_turns(own, fn, line, around)
@@ -408,6 +549,8 @@ class FlowValues:
         for writer, others in group_pairs(row for row in rows if row[0] is not fn or not line).items():
             if remade and writer is not fn and self.code.is_constructor(writer):
                 continue
+            if writer in self.made and self._is_made_otherwise(writer):
+                continue
             found.add(self._evaluate_elsewhere(variable, writer, others, filled, origins, seen), stays=True)
         here = [(use, values) for use, values in filled if use.fn is fn and use.call.line < line]
         for use, values in filled:
@@ -426,7 +569,7 @@ class FlowValues:
             elif isinstance(step, Assignment):
                 # What is made of the variable itself is made of what it was before.
                 itself = _mentions(step.value, step.target)
-                inner = tuple(one for one in seen if one != variable) if itself else seen
+                inner = self._leave_out(variable, seen) if itself else seen
                 self._follow(step, fn, found, origins, inner)
             elif _is_sure(values):
                 found.assign(values, step.call.guard, 2)
@@ -434,18 +577,24 @@ class FlowValues:
                 found.add(values, step.call.guard, 2)
         # In the next turn of a loop.
         loops = {guard for guard in around if fn.facts.guards[guard].kind in LOOPS}
-        last = [set(list_guards_around(fn, each.guard)) for each in sure if each.line == begun]
+        last = [set(fn.list_guards_around(each.guard)) for each in sure if each.line == begun]
         again = loops.difference(set.intersection(*last) if last else ())
         # Or where the function is called anew.
         anew = not begun and variable.kind != "local" and bool(fn.facts.name)
         passed = {id(each) for each in before}
         for each in own:
-            if id(each) not in passed and (anew or not again.isdisjoint(list_guards_around(fn, each.guard))):
+            if id(each) not in passed and (anew or not again.isdisjoint(fn.list_guards_around(each.guard))):
                 found.add(self._evaluate_written(each, fn, origins, seen))
         values = found.list_values()
         if found.held and not values:
             yield FlowValue(None, "given", f"`{variable.name}` has no known value that passes the conditions around")
         yield from _restore_alone(values)
+
+    def _is_made_otherwise(self, fn: Fn) -> bool:
+        """Whether the objects that it is about are made by other constructors than this one."""
+        owner = self.code.find_owner(fn)
+        others = (one for one, rows in self.made.items() if rows and self.code.find_owner(one) is owner)
+        return not self.made[fn] and any(others)
 
     def _evaluate_beginning(self, variable: Variable, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
         """What a member or a variable outside of functions is declared with."""
@@ -531,11 +680,11 @@ class FlowValues:
         if guard < 0 or len(seen) > _NEAR or not (self.settings or self.arguments):
             return DecidedCondition()
         opens = True
-        for place in list_guards_around(fn, guard):
+        for place in fn.list_guards_around(guard):
             one = fn.facts.guards[place]
             number = None if self.arguments is None else self.command_line.decide_number(one, self.arguments)
             asks = one.kind in ASKING and not self.parameter_words.isdisjoint(_WORD.findall(one.text))
-            decided = self._decide_guard(one, fn, seen) if asks and not _is_asking(one, fn, seen) else None
+            decided = self._decide_guard(one, fn, seen) if asks and not self._is_asking(one, fn, seen) else None
             if number is not None:
                 decided = DecidedCondition(number, frozenset(("given",)))
             if decided is None or not decided.is_given or decided.holds is None:
@@ -575,7 +724,7 @@ class FlowValues:
 
     def _runs_over_all(self, fn: Fn, line: int) -> bool:
         """Whether a loop does what stands on a line in every turn, not only for options that it recognises."""
-        around = list_guards_around(fn, _find_guard(fn, line))
+        around = fn.list_guards_around(_find_guard(fn, line))
         return bool(around) and fn.facts.guards[around[0]].kind in LOOPS
 
     def _evaluate_references(self, variable: Variable, seen: tuple) -> Iterator[FlowValue]:
@@ -587,7 +736,7 @@ class FlowValues:
                 parameters = target.facts.parameters
                 if place < len(parameters) and "&" in parameters[place].type and "const" not in parameters[place].type:
                     inner = self.code.identify(parameters[place].name, target)
-                    if inner not in seen:
+                    if not self._is_in(inner, seen):
                         # Through this call alone.
                         values = self.limit_to_calls({**self.way, target: call})
                         values._left = self._left
@@ -701,7 +850,7 @@ class FlowValues:
         """What a call inside an expression gives: a parameter's default, or what a function of the code returns."""
         while arguments is None and get_tail(callee) in _SAME and (head := callee.rpartition(".")[0]).endswith("()"):
             callee = head.removesuffix("()")
-        near = [call for call in fn.facts.calls if call.callee == callee]
+        near = [*fn.list_calls(callee)]
         # What stands in an expression is not before it.
         near.sort(key=lambda call: (call.line < line, abs(call.line - line), call.arguments != arguments))
         if arguments is not None:
@@ -716,7 +865,7 @@ class FlowValues:
                 return
         returned = False
         for target in self.code.list_targets(callee, fn):
-            if ("returns", target) in seen:
+            if self._is_in(("returns", target), seen):
                 continue
             inner = (*seen, ("returns", target))
             # Through this call alone, where it is seen.
@@ -732,7 +881,7 @@ class FlowValues:
 
     def _evaluate_returned(self, each: Assignment, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
         """What a function returns at one place, nothing where it does not come there."""
-        guards = [fn.facts.guards[place] for place in list_guards_around(fn, each.guard)]
+        guards = [fn.facts.guards[place] for place in fn.list_guards_around(each.guard)]
         # What follows a `try` runs where nothing is thrown.
         asking = [guard for guard in guards if guard.kind in ASKING and not guard.text.startswith("catch (")]
         asked = [(guard, self._decide_guard(guard, fn, seen)) for guard in asking]
@@ -749,6 +898,7 @@ class FlowValues:
         if not self.node or name[:1] in ("/", "~"):
             return name
         if id(use.call) not in self._prefixes:
+            self._note_others()
             self._prefixes[id(use.call)] = LOST  # as long as it rests on itself
             self._prefixes[id(use.call)] = self.find_prefix(use)
         prefix = self._prefixes[id(use.call)]
@@ -777,6 +927,8 @@ class FlowValues:
         """What a launch sets the parameter of a use to; None for nothing."""
         setting = self._make_setting_name(name, use)
         given = self.asked[setting] = self.find_setting(setting) if name else None
+        if self._works:
+            self._works[-1].settings[setting] = given
         return given
 
     def _evaluate_parameter(self, use: FrameworkCall, seen: tuple) -> Iterator[FlowValue]:
@@ -794,7 +946,7 @@ class FlowValues:
             return
         yielded = False
         mark = ("parameter", name)
-        declared = self.declared.get(name, ()) if name and mark not in seen else ()
+        declared = self.declared.get(name, ()) if name and not self._is_in(mark, seen) else ()
         others = [other for other in declared if other.call is not use.call]
         # Of a program by its own code: programs of one package may declare a parameter each for itself.
         near = [other for other in others if other.fn.source is use.fn.source]
@@ -897,26 +1049,25 @@ def _take_first(values: Iterator[FlowValue]) -> list[FlowValue]:
     return list(found)
 
 
+def _list_asking(seen: tuple, lines: Collection[tuple[Fn, int]]) -> tuple[tuple, ...]:
+    """Of what is being evaluated, the guards that ask on some lines."""
+    return tuple(one for one in seen if one[0] == "asks" and one[1:3] in lines)
+
+
 def _find_guard(fn: Fn, line: int) -> int:
     """The place of the innermost guard that calls and assignments on a line of a function are under, -1 for none."""
-    return max((one.guard for one in (*fn.facts.calls, *fn.facts.assignments) if one.line == line), default=-1)
-
-
-def _find_guard_of(fn: Fn, line: int, seen: tuple) -> int:
-    """The same for what is asked at a line; where a guard on the line asks, the guard around that one. seen: what is
-    being evaluated."""
-    asking = [one[3] for one in seen if one[0] == "asks" and one[1:3] == (fn, line)]
-    return asking[-1] if asking else _find_guard(fn, line)
+    return max(fn.collect_guards(line), default=-1)
 
 
 def _list_turns(rows: Iterable[Assignment], fn: Fn, line: int, around: Sequence[int]) -> list[Assignment]:
     """Of assignments to a variable the one that the innermost loop around a line begins each turn with, which a
     comprehension has behind its element; several where the line has several loops beside each other. around: the guards
     of what is asked at the line."""
-    on = (row.guard for row in (*fn.facts.calls, *fn.facts.assignments) if row.line == line)
-    at = {*around, *(place for guard in set(on) for place in list_guards_around(fn, guard))}
-    heads = [each for each in rows if each.guard in at and _begins_turn(each, fn)]
-    outer = {place for each in heads for place in list_guards_around(fn, each.guard)[1:]}
+    heads = [each for each in rows if each.guard >= 0 and _begins_turn(each, fn)]
+    if heads:
+        at = {*around, *(place for guard in fn.collect_guards(line) for place in fn.list_guards_around(guard))}
+        heads = [each for each in heads if each.guard in at]
+    outer = {place for each in heads for place in fn.list_guards_around(each.guard)[1:]}
     return [each for each in heads if each.guard not in outer]
 
 
@@ -930,14 +1081,9 @@ def _is_declared_on(each: Assignment, line: int) -> bool:
     return each.line == line and bool(each.type) and not _mentions(each.value, each.target)
 
 
-def _is_asking(guard: Guard, fn: Fn, seen: tuple) -> bool:
-    """Whether it is being worked out if a guard holds."""
-    return ("asks", fn, guard.line, guard.outer) in seen
-
-
 def _find_guard_before(fn: Fn, line: int) -> int:
     """The place of the innermost guard around a line that begins before the line, -1 for none."""
-    around = list_guards_around(fn, _find_guard(fn, line))
+    around = fn.list_guards_around(_find_guard(fn, line))
     return next((place for place in around if fn.facts.guards[place].line < line), -1)
 
 

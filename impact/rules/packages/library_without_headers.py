@@ -17,7 +17,7 @@ Use instead
     <depend>libopencv-dev</depend>
 
 Not reported
-    Keys beside another one that brings the headers.
+    Keys beside another one that brings the headers, and what the library's headers only bring along.
 """
 
 import re
@@ -54,7 +54,9 @@ def library_without_headers(view: TargetView, package: Package):
             continue
         if not need.certain or view.is_met(need.providers, declared) or need.providers[0].name in seen:
             continue
-        wanted = (debian for p in need.providers if p.kind == "system" for debian in view.list_debs(p.name))
+        # The others bring it along, as every library does that asks pkg-config.
+        own = (p.name for p in need.providers if p.kind == "system" and p.package == need.providers[0].package)
+        wanted = (debian for key in own for debian in view.list_debs(key))
         name = _find_bare(bare, (debian for debian in wanted if debian.endswith("-dev")))
         right = next((p.name for p in need.providers if view.is_available(p.name)), None)
         if name is None or right is None:

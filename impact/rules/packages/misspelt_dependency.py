@@ -2,9 +2,9 @@
 
 What it does
     Reports names in a manifest that neither rosdep nor any distro knows, where a key installs the package of Debian,
-    CMake or pkg-config that is called so, where the name is one edit away from a known one, is that of a repository
-    whose packages are called after it, of a target of the package itself, of a module of Python's standard library that
-    the package imports, or of a build type.
+    CMake or pkg-config that is called so, where the name is that of the Debian package of a package of ROS, is one edit
+    away from a known one, is that of a repository whose packages are called after it, of a target of the package
+    itself, of a module of Python's standard library that the package imports, or of a build type.
 
 Why it breaks
     `rosdep install` stops with "Cannot locate rosdep definition for [x]", and bloom refuses to release the package.
@@ -29,7 +29,7 @@ import re
 from ...model.misspelling import is_slip
 from ...model.package import BUILD_TOOLS
 from ..vocabulary import Diagnostic, Doubt, Package, Remove, TargetView, Text, rule
-from .unresolved_names import find_intended, list_unknown, replace_name
+from .unresolved_names import find_intended, find_packaged, list_unknown, replace_name
 
 _NEEDLESS = ("standard library", "target")
 """What a name stands for that is not to be declared."""
@@ -68,7 +68,8 @@ def misspelt_dependency(view: TargetView, package: Package):
         elif kind == "installing" or (kind == "near" and _is_surely_meant(name, replacement)):
             fix = replace_name(view, package, name, replacement)
         if kind not in (*_NEEDLESS, "repository"):
-            kind = "system package" if kind == "installing" and view.target.find_keys(name) else "misspelt"
+            of_system = kind == "installing" and (view.target.find_keys(name) or find_packaged(view, name))
+            kind = "system package" if of_system else "misspelt"
         yield Diagnostic(at, name, package.name, data, kind, doubts, fix)
 
 

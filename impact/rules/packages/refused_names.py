@@ -7,7 +7,8 @@ from ...model.cmake.conditions import make_version_key
 from ..vocabulary import Diagnostic, Package, TargetView, list_place_doubts
 
 # What only code that is not read can mend.
-_HIDDEN = frozenset(("branch", "no sources", "no target", "no value"))
+_BRANCHED = frozenset(("branch", "branch sources"))
+_HIDDEN = frozenset((*_BRANCHED, "no sources", "no target", "no value"))
 
 
 def list_refused(view: TargetView, package: Package, *kinds: str) -> Iterator[RefusedName]:
@@ -19,7 +20,7 @@ def list_refused(view: TargetView, package: Package, *kinds: str) -> Iterator[Re
             continue
         # In other branches a target is made on other machines alone.
         distro = any("ROS_DISTRO" in condition.text for way in refused.ways for condition in way)
-        if refused.kind == "branch" and (any(map(view.applies, refused.ways)) or not distro):
+        if refused.kind in _BRANCHED and (any(map(view.applies, refused.ways)) or not distro):
             continue
         if refused.name not in seen:
             seen.add(refused.name)

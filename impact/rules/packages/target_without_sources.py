@@ -1,7 +1,8 @@
-"""target-without-sources: a library or program is made of what file(GLOB) finds, which is nothing.
+"""target-without-sources: a library or program has no sources where CMake makes it.
 
 What it does
-    Reports add_library() and add_executable() whose sources are all from a file(GLOB) that matches no file.
+    Reports add_library() and add_executable() whose sources are all from a file(GLOB) that matches no file, or all from
+    branches for other distros than the target's.
 
 Why it breaks
     CMake stops: "No SOURCES given to target".
@@ -22,6 +23,7 @@ Not reported
 """
 
 import posixpath
+from collections.abc import Iterator
 
 from ..vocabulary import Diagnostic, Package, TargetView, Text, list_place_doubts, rule
 from .absent_paths import is_absent
@@ -30,7 +32,13 @@ from .refused_names import list_refused
 
 @rule(
     group="refused-cmake-name",
-    texts=Text("`{subject}` has no sources, since no file matches `{pattern}`", "correct the pattern"),
+    texts={
+        "pattern": Text("`{subject}` has no sources, since no file matches `{pattern}`", "correct the pattern"),
+        "branch": Text(
+            "`{subject}` has no sources on {distro}, since branches for other distros alone give it some",
+            "add a branch for {distro}",
+        ),
+    },
 )
 def target_without_sources(view: TargetView, package: Package):
     filled = {
@@ -43,4 +51,17 @@ def target_without_sources(view: TargetView, package: Package):
         if inside and refused.name not in filled:
             doubts = list_place_doubts(view, "build", refused.conditions)
             data = {"pattern": package.strip_path(refused.patterns[0])}
-            yield Diagnostic(refused.at, refused.name, package.name, data, doubts=doubts)
+            yield Diagnostic(refused.at, refused.name, package.name, data, "pattern", doubts)
+    yield from _list_left_out(view, package)
+
+
+def _list_left_out(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+    """Targets all of whose sources stand in branches for other distros."""
+    targets = {target.name: target for target in package.build.targets}
+    for refused in list_refused(view, package, "branch sources"):
+        target = targets.get(refused.name)
+        if target is None or set(target.sources) - set(refused.patterns):
+            continue
+        if not any(link.how == "objects" for link in target.links):
+            data, doubts = {"distro": view.target.distro}, list_place_doubts(view, "build", refused.conditions)
+            yield Diagnostic(refused.at, refused.name, package.name, data, "branch", doubts)

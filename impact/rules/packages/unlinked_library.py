@@ -81,7 +81,7 @@ def unlinked_library(view: TargetView, package: Package):
                 continue
             if not view.is_sure(target.conditions):
                 continue
-            if _is_brought(view, package, name, include.path, word, mistaken):
+            if is_brought(view, package, name, include.path, word, mistaken):
                 continue
             seen.add((word, name))
             subject = include.path.partition("/")[0].removesuffix(".h")
@@ -102,9 +102,10 @@ def _gives_folders(item: str, word: str) -> bool:
     return "_INCLUDE_DIR" in item and word in strip_separators(item)
 
 
-def _is_brought(view: TargetView, package: Package, target: str, header: str, word: str, mistaken: bool) -> bool:
-    """Whether anything that a target is given links the library of a header, or may. mistaken: the target is given the
-    library's folders, so that it needs the library, and what is not known to bring that counts for nothing."""
+def is_brought(view: TargetView, package: Package, target: str, header: str, word: str, mistaken: bool) -> bool:
+    """Whether anything that a target is given links the library of a header, or may. word: of every name that the
+    library is linked by. mistaken: the target is given the library's folders, so that it needs the library, and what is
+    not known to bring that counts for nothing."""
     items = list_linked(package, target)
     if items is None:
         return True
@@ -117,7 +118,11 @@ def _is_brought(view: TargetView, package: Package, target: str, header: str, wo
         return True
     packages = find_linked_packages(view, package, items)
     if view.target.ros == 2:
-        return view.is_met(view.find_header(header), view.list_transitive(packages))
+        coming = view.list_transitive(packages)
+        own = (view.workspace.packages[name] for name in coming if name in view.workspace.packages)
+        if any(word in strip_separators(found.name) for one in own for found in one.build.found):
+            return True  # though its manifest does not say so
+        return view.is_met(view.find_header(header), coming)
     bringing = CatkinExports(view).list_bringing(packages, word)
     return bool(bringing) or (bringing is None and not mistaken)
 
@@ -129,6 +134,6 @@ def _may_bring_anything(view: TargetView, package: Package, item: str) -> bool:
     if name in BRING_NOTHING or view.is_package(name) or name.startswith(("Qt5", "Qt6")):
         return False
     if "$" not in item:
-        return "::" in item
+        return "::" in item or any(found.name == name for found in package.build.found)
     start = name.lower()[:3]
     return any(start in (f.name.lower()[:3], f.prefix.lower()[:3]) for f in package.build.found)

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from ....edges.memory import cache_in_derived
 from ...facts.python.uses import KINDS
+from ...targets.changes import DISTROS
 from ...targets.providers.stdlib import was_ever_in_stdlib
 from ...targets.target import Resolution
 from ..vocabulary import At, Package, Remove, Replace, TargetView
@@ -92,10 +93,22 @@ def find_installing(view: TargetView, package: Package, name: str) -> str:
     find_package() or pkg-config finds; empty where there is none, or where a module of Python may be meant."""
     if keys := view.target.find_keys(name):
         return min(keys, key=lambda key: len(view.list_debs(key)))
+    if of_ros := find_packaged(view, name):
+        return of_ros
     if not package.build.targets and _find_namesake(view, package, name):
         return ""
     providers = (*view.find_cmake(name), *view.providers.find_pkgconfig(name))
     return next((p.name for p in providers if p.kind == "system" and p.sure and view.target.resolve(p.name)), "")
+
+
+_PACKAGED = re.compile(r"ros-([a-z]+)-([a-z0-9-]+)")
+
+
+def find_packaged(view: TargetView, name: str) -> str:
+    """The package of ROS that a name stands for where that is the one of its Debian package; empty for others."""
+    found = _PACKAGED.fullmatch(name)
+    package = found[2].replace("-", "_") if found and found[1] in DISTROS else ""
+    return package if package and view.is_available(package) else ""
 
 
 def _find_namesake(view: TargetView, package: Package, name: str) -> str:

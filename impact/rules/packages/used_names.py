@@ -13,7 +13,8 @@ def shows_uses(package: Package) -> bool:
 
 def list_used_names(view: TargetView, package: Package) -> frozenset[str]:
     """Names of packages and keys that something in a package means: includes, imports, launch files, interfaces,
-    exports, commands of CMake, or words of YAML and robot descriptions; also what they mean on other targets alone."""
+    exports, commands of CMake, words of YAML and robot descriptions, or the environment of ROS that CMake reads; also
+    what they mean on other targets alone."""
     linked, build = view.workspace.packages.get(package.name, package).linked, package.build
     return frozenset((
         *(provider.name for need in view.list_needs(package) for provider in need.providers),
@@ -24,6 +25,7 @@ def list_used_names(view: TargetView, package: Package) -> frozenset[str]:
         *(item.module.split(".")[0] for item in linked.imports),
         *(use.reference.package for use in linked.references),
         *linked.named,
+        *(("ros_environment", "roslib") if any(use.kind == "environment" for use in build.uses) else ()),
     ))  # fmt: skip
 
 

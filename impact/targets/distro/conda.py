@@ -1,4 +1,5 @@
-"""The versions of libraries that conda-forge and RoboStack build against, by day: data/conda.json.zst, see DATA.md."""
+"""The versions of libraries that conda-forge and RoboStack build against, and that Debian unstable has, by day:
+data/conda.json.zst, see DATA.md."""
 
 from __future__ import annotations
 
@@ -9,7 +10,9 @@ from ..tables import find_table
 from ..unpacked import read_table
 
 CHANNELS = frozenset(("conda-forge", "robostack"))
-"""Platforms that this knows: conda-forge, and RoboStack, which holds a distro's packages to versions of its own."""
+"""Channels that this knows: conda-forge, and RoboStack, which holds a distro's packages to versions of its own."""
+SID = "debian sid"
+"""The platform beside them whose versions are known by day."""
 
 _Rows = dict[str, dict[str, str]]
 
@@ -22,10 +25,10 @@ def _load_table() -> dict[str, _Rows]:
 def find_libraries(platform: str, distro: str, day: str) -> dict[str, tuple[str, str]]:
     """The version of each library on a day, with the channel that states it; empty for other platforms. Raises
     SnapshotError."""
-    if platform not in CHANNELS:
+    if platform not in CHANNELS and platform != SID:
         return {}
     found: dict[str, tuple[str, str]] = {}
-    for channel in ("conda-forge", distro) if platform == "robostack" else ("conda-forge",):
+    for channel in ("conda-forge", distro) if platform == "robostack" else (platform,):
         for name, rows in _load_table().get(channel, {}).items():
             version = _find_last_version(rows, day)
             if version:

@@ -27,7 +27,7 @@ from ..snapshot import KINDS, Snapshot
 from ..tables import compute_data_stamp
 from ..target import ReleasedDependency, Resolution
 from ..version import parse_number
-from .conda import CHANNELS, find_libraries
+from .conda import CHANNELS, SID, find_libraries
 from .known import (
     _strip_packaging,
     compute_end_of_day,
@@ -606,6 +606,9 @@ class DistroTarget:
         if self.platform in CHANNELS:
             pinned = find_libraries(self.platform, self.distro, self.date)
             return {name: Library(version, f"pins of {channel}") for name, (version, channel) in pinned.items()}
+        if self.platform == SID:
+            daily = find_libraries(self.platform, self.distro, self.date)
+            return {name: Library(version, "changelogs of Debian") for name, (version, _) in daily.items()}
         return {
             name: Library(version, source)
             for name, version, source in self._data.fetch(
@@ -635,7 +638,7 @@ class DistroTarget:
             if self._own_libraries[wanted]:
                 yield self._own_libraries[wanted]
             return
-        if self.platform not in CHANNELS and self._facts:
+        if self.platform not in (*CHANNELS, SID) and self._facts:
             instead = self._facts.libraries_from.get(wanted)
             if instead and (version := self.find_version(instead)):
                 yield version

@@ -53,18 +53,25 @@ class CppCallback(NamedTuple):
 
 def list_cpp_callbacks(workspace: Workspace, graph: Graph) -> list[CppCallback]:
     """All callbacks of the workspace's C++ code, in the order of their places."""
+    return list_callbacks(workspace, graph, "cpp")
+
+
+def list_callbacks(workspace: Workspace, graph: Graph, language: str) -> list[CppCallback]:
+    """All callbacks of the workspace's code in a language (`cpp`, `python`), in the order of their places."""
     join = get_flow(workspace).code
     ends = group_pairs(((one.role, one.path, one.line), one) for one in graph.endpoints)
     found: dict[tuple[str, str, int, str], CppCallback] = {}
-    for each in (*_list_endpoints(join, ends), *_list_timers(join, graph)):
+    for each in (*_list_endpoints(join, ends, language), *_list_timers(join, graph, language)):
         found.setdefault((each.kind, each.path, each.line, each.name), each)
     return sorted(found.values(), key=lambda each: (each.path, each.line, each.kind, each.name))
 
 
-def _list_endpoints(join: Join, ends: dict[tuple[str, str, int], list[Endpoint]]) -> Iterator[CppCallback]:
+def _list_endpoints(
+    join: Join, ends: dict[tuple[str, str, int], list[Endpoint]], language: str
+) -> Iterator[CppCallback]:
     for site in join.sites.endpoints:
         fn = site.use.fn
-        if site.role not in _KINDS or site.implied or fn.source.facts.language != "cpp":
+        if site.role not in _KINDS or site.implied or fn.source.facts.language != language:
             continue
         path, line = fn.source.path, site.use.call.line
         rows = ends.get((site.role, path, line), [])
@@ -79,11 +86,11 @@ def _list_endpoints(join: Join, ends: dict[tuple[str, str, int], list[Endpoint]]
             )  # fmt: skip
 
 
-def _list_timers(join: Join, graph: Graph) -> Iterator[CppCallback]:
+def _list_timers(join: Join, graph: Graph, language: str) -> Iterator[CppCallback]:
     nodes = group_pairs(((one.path, one.line), one.node) for one in graph.timers)
     for site in join.sites.timers:
         fn = site.use.fn
-        if fn.source.facts.language != "cpp":
+        if fn.source.facts.language != language:
             continue
         path, line = fn.source.path, site.use.call.line
         for callback in site.callbacks:

@@ -19,7 +19,7 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-from ....edges.files import read_text
+from ....edges.files import read_text, write_file
 from ..outcomes import NOWHERE, CodeLine, CrashKind, Observable, Reaction, Witness
 
 SECONDS = 2
@@ -102,7 +102,7 @@ def replay(
     with tempfile.TemporaryDirectory(prefix="rosimpact-replay-") as folder:
         given, out = Path(folder, "witnesses"), Path(folder, "results")
         lines = [line for one in witnesses for line in (*(f"{path}={bits}" for path, bits in one.items()), "---")]
-        given.write_text("\n".join([*lines, ""]), encoding="utf-8", errors="surrogateescape")
+        write_file(given, "\n".join([*lines, ""]).encode(errors="surrogateescape"))
         isolation = find_isolation()
         command = [*isolation, str(program), entry, str(given), str(out), str(seconds)]
         why = run_limited(command, Path(folder), seconds * len(witnesses) + 20)

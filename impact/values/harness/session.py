@@ -138,12 +138,13 @@ class HarnessSession:
 
     def prepare(
         self, *, nodes: Collection[str] = (), topics: Collection[str] = (), callbacks: Collection[str] = (),
-        kinds: Collection[str] = KINDS,
+        kinds: Collection[str] = KINDS, places: Collection[tuple[str, int]] = (),
     ) -> Iterator[PreparedCallback]:  # fmt: skip
         """The callbacks that are asked for (all of the kinds where nothing is named), one source file after another.
 
-        nodes: by id or its last part; topics: by name; callbacks: by name or its last parts."""
-        asked = [one for one in self.callbacks if _is_asked(one, nodes, topics, callbacks, kinds)]
+        nodes: by id or its last part; topics: by name; callbacks: by name or its last parts; places: path
+        and line of the calls that make them."""
+        asked = [one for one in self.callbacks if is_asked(one, nodes, topics, callbacks, kinds, places)]
         for number, (source, rows) in enumerate(group_pairs((one.path, one) for one in asked).items()):
             yield from self._prepare_source(f"unit{number}", source, rows)
 
@@ -230,20 +231,18 @@ class HarnessSession:
         return self._further[path]
 
 
-def _is_asked(
-    one: CppCallback,
-    nodes: Collection[str],
-    topics: Collection[str],
-    callbacks: Collection[str],
-    kinds: Collection[str],
-) -> bool:
-    if one.kind not in kinds:
+def is_asked(
+    one: CppCallback, nodes: Collection[str], topics: Collection[str], callbacks: Collection[str],
+    kinds: Collection[str], places: Collection[tuple[str, int]] = (),
+) -> bool:  # fmt: skip
+    """Whether a callback is one of those that were asked for; see HarnessSession.prepare()."""
+    if one.kind not in kinds or (places and (one.path, one.line) not in places):
         return False
     if nodes and not any(_ends_like(each, name, "/") for each in one.nodes for name in nodes):
         return False
     if topics and not any(each in topics or each.lstrip("/") in topics for each in one.topics):
         return False
-    return not callbacks or any(_ends_like(one.name, name, "::") for name in callbacks)
+    return not callbacks or any(_ends_like(one.name, name, mark) for name in callbacks for mark in ("::", "."))
 
 
 def _ends_like(full: str, end: str, separator: str) -> bool:

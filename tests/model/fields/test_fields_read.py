@@ -438,6 +438,43 @@ def test_filters_look_at_the_header(path, code, reads, escapes, tmp_path):
     assert tell(find_subscriber(report(tmp_path, {path: code}))) == (reads, escapes)
 
 
+TWO = """#include <message_filters/synchronizer.h>
+#include <robot/Status.h>
+using Sync = message_filters::Synchronizer<Policy>;
+class Watch {{
+ public:
+  Watch() {{
+    one_.subscribe(nh_, "other", 1);
+    two_.subscribe(nh_, "status", 1);
+    sync_ = std::make_shared<Sync>(Policy(5), one_, two_);
+    sync_->registerCallback({callback});
+  }}
+  void onBoth(const robot::Status::ConstPtr& one, const robot::Status::ConstPtr& two) {{
+    int x = one->level + two->name.size();
+  }}
+  void onSwapped(const robot::Status::ConstPtr& two, const robot::Status::ConstPtr& one) {{ onBoth(one, two); }}
+  ros::NodeHandle nh_;
+  message_filters::Subscriber<robot::Status> one_, two_;
+  std::shared_ptr<Sync> sync_;
+}};
+int main(int argc, char** argv) {{ ros::init(argc, argv, "watch"); Watch watch; ros::spin(); }}
+"""
+
+
+@pytest.mark.parametrize(
+    ("callback", "reads"),
+    [
+        ("std::bind(&Watch::onBoth, this, std::placeholders::_1, std::placeholders::_2)", {"name"}),
+        ("boost::bind(&Watch::onBoth, this, _1, _2)", {"name"}),
+        ("&Watch::onBoth, this", {"name"}),
+        ("boost::bind(&Watch::onSwapped, this, _2, _1)", {"level", "name"}),
+    ],
+)
+def test_a_synchronizer_gives_messages_in_the_order_of_its_filters(callback, reads, tmp_path):
+    found = report(tmp_path, {"src/watch.cpp": TWO.format(callback=callback)})
+    assert tell(find_subscriber(found)) == (reads, {"header.stamp"})
+
+
 @pytest.mark.parametrize(
     ("body", "unread"),
     [
@@ -449,3 +486,129 @@ def test_filters_look_at_the_header(path, code, reads, escapes, tmp_path):
 )
 def test_where_the_size_is_asked_for_elements_stay(body, unread, tmp_path):
     assert {field for field in read_python(tmp_path, body).unread if field.startswith("points")} == unread
+
+
+LAUNCH = """<launch>
+  <node pkg="robot" type="watch.py" name="watch"/>
+  {more}
+</launch>
+"""
+
+
+@pytest.mark.parametrize(
+    ("more", "why"),
+    [
+        ("", ""),
+        ('<node pkg="rviz" type="rviz" name="rviz"/>',
+         "robot/launch/all.launch:3 starts `rviz`, whose code is not here"),
+        ('<include file="$(find other)/launch/other.launch"/>',
+         "robot/launch/all.launch:3 includes `$(find other)/launch/other.launch`, which is not here"),
+    ],
+    ids=["its own nodes", "a program of another package", "a launch file of another package"],
+)  # fmt: skip
+def test_what_a_launch_file_starts_of_other_packages_may_read_a_topic(more, why, tmp_path):
+    code = SCRIPT.format(body="        x = msg.level", members="", before="")
+    found = report(tmp_path, {"scripts/watch.py": code, "launch/all.launch": LAUNCH.format(more=more)})
+    (topic,) = [one for one in found.topics if one.topic == "/status"]
+    assert topic.open == ((why,) if why else ())
+    assert bool(topic.unread) == (not why)
+
+
+def test_subscribers_whose_topic_is_not_known_are_told_apart(tmp_path):
+    code = SCRIPT.format(body="        x = msg.level", members="", before="")
+    code = code.replace('rospy.Subscriber("status"', 'rospy.Subscriber(rospy.get_param("~topic")')
+    found = report(tmp_path, {"scripts/watch.py": code})
+    assert [one.topic for one in found.topics] == []
+    (unnamed,) = found.unnamed
+    assert (unnamed.topic, unnamed.type, unnamed.unread) == ("", "robot/Status", ())
+    assert tell(unnamed.subscribers[0]) == ({"level"}, set())
+
+
+MIRROR = """class Mirror:
+    def __setattr__(self, name, value):
+        print(value.pose.position.x)
+
+class Other:
+    def __setattr__(self, name, value):
+        print(value.name)
+"""
+
+
+@pytest.mark.parametrize(("base", "reads"), [("Mirror", {"pose.position.x"}), ("object", set())])
+def test_setting_an_attribute_calls_what_its_class_has_for_it(base, reads, tmp_path):
+    code = SCRIPT.format(body="        self.kept = msg", members="", before=MIRROR)
+    code = code.replace("class Watch:", f"class Watch({base}):")
+    assert tell(find_subscriber(report(tmp_path, {"scripts/watch.py": code})))[0] == reads
+
+
+def test_a_filter_that_a_pointer_is_made_of(tmp_path):
+    code = """#include <message_filters/subscriber.h>
+#include <robot/Status.h>
+void onStatus(const robot::Status::ConstPtr& msg) { int x = msg->level; }
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "watch");
+  ros::NodeHandle nh;
+  boost::shared_ptr<message_filters::Subscriber<robot::Status> > sub(
+      new message_filters::Subscriber<robot::Status>(nh, "status", 1));
+  sub->registerCallback(onStatus);
+  ros::spin();
+}
+"""
+    found = report(tmp_path, {"src/watch.cpp": code})
+    assert tell(find_subscriber(found)) == ({"level"}, {"header.stamp"})
+
+
+# What the publisher does with `msg` before it publishes it, and the lengths that this writes.
+LENGTHS = {
+    "a text": ('msg.name = "base";', 'msg.name = "base"', {"name": 4}),
+    "a text in a part": ('msg.header.frame_id = "map";', 'msg.header.frame_id = "map"', {"header.frame_id": 3}),
+    "the longest": ('msg.name = "a"; if (ok) msg.name = "abc";', 'msg.name = "abc"\nmsg.name = "a"', {"name": 3}),
+    "bytes of UTF-8": ('msg.name = "\u00e4";', 'msg.name = "\u00e4"', {"name": 2}),
+    "elements": ("msg.ranges.resize(720);", "msg.ranges = [0.0] * 720", {"ranges": 720}),
+    "elements and a value": ("msg.ranges.assign(8u, 0.0f);", "msg.ranges = 8 * [0.0]", {"ranges": 8}),
+    "a vector": ("msg.ranges = std::vector<float>(16);", "msg.ranges = [1.0, 2.0]", {"ranges": (16, 2)}),
+    "a number that is not written": ("msg.ranges.resize(count);", "msg.ranges = [0.0] * count", {}),
+    "added to": ('msg.name += "more";', 'msg.name += "more"', {}),
+    "another message": ('other.name = "base";', 'other.name = "base"', {}),
+}
+TALK_CPP = """#include <ros/ros.h>
+#include <robot/Status.h>
+int main(int argc, char** argv) {{
+  ros::init(argc, argv, "talk");
+  ros::NodeHandle nh;
+  ros::Publisher pub = nh.advertise<robot::Status>("status", 1);
+  bool ok = argc > 1;
+  int count = argc;
+  robot::Status msg, other;
+  {body}
+  pub.publish(msg);
+}}
+"""
+TALK_PYTHON = """#!/usr/bin/env python3
+import rospy
+from robot.msg import Status
+rospy.init_node("talk")
+pub = rospy.Publisher("status", Status, queue_size=1)
+count = len(rospy.myargv())
+msg = Status()
+other = Status()
+{body}
+pub.publish(msg)
+"""
+
+
+@pytest.mark.parametrize("language", [0, 1])
+@pytest.mark.parametrize("case", LENGTHS)
+def test_lengths_that_publishers_write(tmp_path, case, language):
+    *bodies, lengths = LENGTHS[case]
+    name, text = (("src/watch.cpp", TALK_CPP), ("scripts/talk.py", TALK_PYTHON))[language]
+    (topic,) = [one for one in report(tmp_path, {name: text.format(body=bodies[language])}).topics if one.publishers]
+    (publisher,) = topic.publishers
+    expected = {key: value if isinstance(value, int) else value[language] for key, value in lengths.items()}
+    assert dict(publisher.lengths) == expected
+
+
+def test_lengths_of_what_is_made_with_keywords(tmp_path):
+    body = 'pub.publish(Status(name="base", ranges=[1.0, 2.0, 3.0], level=2))'
+    (topic,) = [one for one in report(tmp_path, {"scripts/talk.py": TALK_PYTHON.format(body=body)}).topics]
+    assert [dict(one.lengths) for one in topic.publishers] == [{"name": 4, "ranges": 3}, {}]

@@ -46,9 +46,7 @@ MAP = """
 
 @pytest.mark.parametrize(("space", "given", "expected"), [
     ('above + "/" + space', "", {("/far/far", "/far/cells"), ("/far/far", "/far/drawn")}),
-    ('above + "/" + space', "/robot", {
-        ("/<namespace>/far", "/<namespace>/cells"), ("/<namespace>/far", "/<namespace>/drawn"),
-    }),
+    ('above + "/" + space', "/robot", {("/robot/far/far", "/robot/far/cells"), ("/robot/far/far", "/robot/far/drawn")}),
     ('"/all"', "/robot", {("/all/far", "/all/cells"), ("/all/far", "/all/drawn")}),
     ("find_space(above)", "", {("/<namespace>/far", "/<namespace>/cells"), ("/<namespace>/far", "/<namespace>/drawn")}),
 ])  # fmt: skip
@@ -65,6 +63,106 @@ def test_the_options_of_an_inner_node_put_it_into_a_namespace(tmp_path, space, g
     found = graph_on_disk(tmp_path, files, "map/launch/map.launch.xml")
     told = {(node, topic) for node, topic, _ in ends(found, "publisher")}
     assert told == expected | {(f"{given}/it", f"{given}/served")}
+
+
+HELPED = MAP.replace("    class Map :", """
+    std::string add(const std::string & above, const std::string & inner) {
+      if (!above.empty() && above.back() == '/') {
+        return above + inner;
+      }
+      return above + "/" + inner;
+    }
+    rclcpp::NodeOptions make_options(const std::string & name, const std::string & above) {
+      std::vector<std::string> arguments{"--ros-args"};
+      replace(arguments, "-r", "__ns:=" + add(above, name));
+      replace(arguments, "-r", name + ":" + "__node:=" + name);
+      return rclcpp::NodeOptions().arguments(arguments);
+    }
+    class Map :""").replace("""rclcpp::NodeOptions().arguments({
+          "--ros-args", "-r", std::string("__ns:=") + SPACE, "-r", name + ":" + std::string("__node:=") + name})""",
+    "make_options(name, above)")  # fmt: skip
+
+
+@pytest.mark.parametrize(("given", "above"), [("", ""), ("/robot", "/robot")])
+def test_a_function_that_makes_the_options_of_an_inner_node_names_it(tmp_path, given, above):
+    files = {
+        "map/package.xml": manifest("map", "ament_cmake"),
+        "map/CMakeLists.txt": (
+            "cmake_minimum_required(VERSION 3.16)\nproject(map)\nfind_package(ament_cmake REQUIRED)\n"
+            "find_package(rclcpp REQUIRED)\nadd_executable(server server.cpp)\nament_package()\n"
+        ),
+        "map/server.cpp": HELPED,
+        "map/launch/map.launch.xml": f'<launch><node pkg="map" exec="server" name="it" namespace="{given}"/></launch>',
+    }
+    found = graph_on_disk(tmp_path, files, "map/launch/map.launch.xml")
+    assert {(node, topic) for node, topic, _ in ends(found, "publisher")} == {
+        (f"{above}/far/far", f"{above}/far/cells"), (f"{above}/far/far", f"{above}/far/drawn"),
+        (f"{given}/it", f"{given}/served"),
+    }  # fmt: skip
+
+
+def test_a_node_that_a_plugin_is_given_is_not_run_by_the_plugin():
+    files = {
+        "p/CMakeLists.txt": """
+            cmake_minimum_required(VERSION 3.16)
+            project(p)
+            find_package(ament_cmake REQUIRED)
+            find_package(rclcpp REQUIRED)
+            find_package(pluginlib REQUIRED)
+            add_library(planner SHARED planner.cpp)
+            ament_package()
+        """,
+        "p/package.xml": manifest("p", "ament_cmake"),
+        "p/map.hpp": """
+            #include <rclcpp/rclcpp.hpp>
+            namespace p {
+            class Map : public rclcpp::Node {
+            public:
+              Map() : Node("map") {}
+              void start() { pub_ = create_publisher<std_msgs::msg::Bool>("cells", 1); }
+              rclcpp::Publisher<std_msgs::msg::Bool>::SharedPtr pub_;
+            };
+            }
+        """,
+        "p/planner.cpp": """
+            #include <pluginlib/class_list_macros.hpp>
+            #include "map.hpp"
+            namespace p {
+            class Planner : public Base {
+            public:
+              void configure(rclcpp::Node::SharedPtr node, std::shared_ptr<p::Map> map) override {
+                map->start();
+                pub_ = node->create_publisher<std_msgs::msg::Bool>("planned", 1);
+              }
+              rclcpp::Publisher<std_msgs::msg::Bool>::SharedPtr pub_;
+            };
+            }
+            PLUGINLIB_EXPORT_CLASS(p::Planner, Base)
+        """,
+    }
+    found = graph(files)
+    plugins = {node.id for node in found.nodes if node.kind == "plugin"}
+    assert {one.topic for one in found.endpoints if one.node in plugins and not one.implied} == {"/planned"}
+
+
+def test_of_several_constructors_the_one_that_makes_the_object_tells_its_members(tmp_path):
+    code = MAP.replace(
+        "explicit Map(const std::string & name) : Map(name, \"/\", name) {}",
+        "explicit Map(const rclcpp::NodeOptions & options) : Node(\"map\", options), name_(\"map\") {}",
+    ).replace(': Node(name, ""', ': name_(name), Node(name, ""').replace("SPACE", "space").replace(
+        "void begin() {", "std::string name_;\n      void begin() { own_ = create_publisher<Bool>(name_ + \"_own\", 1);"
+    )  # fmt: skip
+    files = {
+        "map/package.xml": manifest("map", "ament_cmake"),
+        "map/CMakeLists.txt": (
+            "cmake_minimum_required(VERSION 3.16)\nproject(map)\nfind_package(ament_cmake REQUIRED)\n"
+            "find_package(rclcpp REQUIRED)\nadd_executable(server server.cpp)\nament_package()\n"
+        ),
+        "map/server.cpp": code,
+        "map/launch/map.launch.xml": '<launch><node pkg="map" exec="server"/></launch>',
+    }
+    found = graph_on_disk(tmp_path, files, "map/launch/map.launch.xml")
+    assert {topic for _, topic, _ in ends(found, "publisher") if topic.endswith("own")} == {"/far/far_own"}
 
 
 def test_a_component_is_called_what_its_base_class_calls_it():

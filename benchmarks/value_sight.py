@@ -1,0 +1,144 @@
+"""What callbacks do with values, at first sight: callbacks drawn from workspaces that nobody here had opened.
+
+A set is benchmarks/values/NAME.systems.jsonl (repo, commit) and NAME.drawn.jsonl, a record for each callback: repo,
+commit, path and line (of the subscription), callback, type. A reader of the sources who has not seen the tool's answer
+adds, of messages within texts of 8 bytes and arrays of 3 elements and of any state of the node
+    handles  whether something that others can observe may follow
+    ignores  whether some message leads to nothing at all; logs: to a line in a log and nothing else
+    crashes  what some message leads to: kind (as rosimpact names it) and line
+    opaque   true where it cannot be said without code that is not in the workspace; then the others are left out
+What the tool says is computed when it is scored, on a checkout of the commit, and written beside it (NAME.said.jsonl).
+A crash that the reader has not got is judged by hand afterwards: `true` in NAME.verdicts.jsonl (repo, path, line, kind)
+
+usage: value_sight.py draw --set NAME --clones FOLDER [--number 6] [--seed 20]
+       value_sight.py score --set NAME --clones FOLDER --work FOLDER [--replay] [--seconds 20]
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import random
+import statistics
+import subprocess
+import sys
+from pathlib import Path
+
+import mining
+from field_sight import list_callbacks
+from rosimpact.edges.console import UserError
+from rosimpact.impact.analysis.values import explore_values
+from rosimpact.impact.values.answers import CallbackAnswer
+from rosimpact.impact.values.outcomes import Bounds, Reaction
+
+SETS = Path(__file__).parent / "values"
+_WORDS = (("handles", Reaction.HANDLED), ("ignores", Reaction.IGNORED), ("logs", Reaction.LOG_ONLY))
+
+
+def draw(options: argparse.Namespace, systems: list[dict]) -> None:
+    """Draws callbacks by a fixed seed; those that were drawn before are kept."""
+    with (SETS / f"{options.set}.drawn.jsonl").open("w") as out:
+        for system in systems:
+            (clone,) = mining.find_clones(options.clones, [system["repo"]])
+            chance = random.Random(f"{options.seed} {clone.name} {system['commit']}")
+            records = [record for record, _ in list_callbacks(clone, system["commit"])]
+            for record in chance.sample(records, min(options.number, len(records))):
+                del record["fields"]
+                out.write(json.dumps(record) + "\n")
+            print(f"{system['repo']}: {len(records)} callbacks", file=sys.stderr, flush=True)
+
+
+def describe(answer: CallbackAnswer) -> dict:
+    """What the tool says of a callback, as facts."""
+    return {
+        "explored": answer.is_explored, "complete": answer.is_complete, "reason": answer.reason[:300],
+        "ways": {one.value: count for one, count in answer.counts.items()},
+        "crashes": [
+            {"kind": one.crash.value, "path": one.place.path, "line": one.place.line, "confirmed": one.confirmed}
+            for one in answer.examples
+            if one.crash is not None
+        ],
+        "unknown": list(answer.unknown)[:5], "seconds": round(answer.seconds, 2),
+    }  # fmt: skip
+
+
+def ask(options: argparse.Namespace, system: dict, records: list[dict]) -> list[dict]:
+    """What the tool says of the callbacks of one system, in their order."""
+    (clone,) = mining.find_clones(options.clones, [system["repo"]])
+    folder = options.work / clone.name.replace("/", "+")
+    if not folder.exists():
+        folder.mkdir(parents=True)
+        command = ["git", "-C", clone.folder, "archive", system["commit"]]
+        archive = subprocess.run(command, check=True, capture_output=True)
+        subprocess.run(["tar", "-x", "-C", folder], input=archive.stdout, check=True)
+    names = sorted({record["callback"] for record in records})
+    bounds = Bounds(seconds=options.seconds)
+    try:
+        answer = explore_values(
+            folder, callbacks=names, bounds=bounds, replays=options.replay, publishers=False, jobs=2
+        )
+    except UserError as error:
+        print(f"{system['repo']}: {error}", file=sys.stderr)
+        return [{"explored": False, "reason": str(error)} for _ in records]
+    said = []
+    for record in records:
+        rows = [one for one in answer.report.callbacks if one.callback == record["callback"]]
+        same = [one for one in rows if one.message_type == record["type"]] or rows
+        said.append(describe(same[0]) if same else {"explored": False, "reason": "the tool has no such callback"})
+    return said
+
+
+def score(options: argparse.Namespace, systems: list[dict], records: list[dict]) -> None:
+    """Prints how many callbacks are explored, and how often tool and reader say the same."""
+    pairs: list[tuple[dict, dict]] = []
+    with (SETS / f"{options.set}.said.jsonl").open("w") as out:
+        for system in systems:
+            own = [record for record in records if record["repo"] == system["repo"]]
+            for record, said in zip(own, ask(options, system, own) if own else [], strict=True):
+                pairs.append((record, said))
+                where = {key: record[key] for key in ("repo", "path", "line", "callback")}
+                out.write(json.dumps({**where, **said}) + "\n")
+                out.flush()
+    explored = [(record, said) for record, said in pairs if said["explored"]]
+    print(f"{len(pairs)} callbacks, {len(explored)} explored to a verdict")
+    for word, reaction in _WORDS:
+        judged = [(record[word], bool(said["ways"].get(reaction.value))) for record, said in explored if word in record]
+        wrong = [f"{record['callback']}" for record, said in explored
+                 if word in record and record[word] != bool(said["ways"].get(reaction.value))]  # fmt: skip
+        print(f"{word}: {len(judged) - len(wrong)} of {len(judged)} the same; otherwise: {', '.join(wrong)}")
+    found = missed = unconfirmed = 0
+    others: list[str] = []
+    for record, said in explored:
+        known = {(one["kind"], one["line"]) for one in record.get("crashes", ())}
+        seen = {(one["kind"], one["line"]) for one in said["crashes"]}
+        found, missed = found + len(known & seen), missed + len(known - seen)
+        unconfirmed += sum(one["confirmed"] is False for one in said["crashes"])
+        others += [f"{record['repo']} {record['callback']}:{line} {kind}" for kind, line in sorted(seen - known)]
+    print(f"crashes: {found} as the reader has them, {missed} missed, {unconfirmed} not confirmed by the replay")
+    print("to be judged: " + ("; ".join(others) or "none"))
+    times = [said["seconds"] for _, said in pairs if "seconds" in said]
+    if times:
+        print(f"seconds: median {statistics.median(times):.2f}, most {max(times):.2f}")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("command", choices=("draw", "score"))
+    parser.add_argument("--set", required=True)
+    parser.add_argument("--clones", type=Path, required=True)
+    parser.add_argument("--work", type=Path, default=Path("build/values"))
+    parser.add_argument("--number", type=int, default=6)
+    parser.add_argument("--seed", type=int, default=20)
+    parser.add_argument("--seconds", type=float, default=20.0)
+    parser.add_argument("--replay", action="store_true")
+    options = parser.parse_args()
+    systems = [json.loads(line) for line in (SETS / f"{options.set}.systems.jsonl").read_text().splitlines()]
+    if options.command == "draw":
+        draw(options, systems)
+        return
+    records = [json.loads(line) for line in (SETS / f"{options.set}.drawn.jsonl").read_text().splitlines()]
+    score(options, systems, records)
+
+
+if __name__ == "__main__":
+    main()

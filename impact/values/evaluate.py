@@ -1,0 +1,169 @@
+"""From an exploration to an answer: value sets of fields, examples with witnesses, and what was published."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import NamedTuple
+
+import z3
+
+from .answers import CallbackExample, FieldSets, SentThrough, SentValues
+from .outcomes import CallbackPath, CodeLine, Exploration, InputKind, Reaction, Sent, SymbolicInput
+from .projection import FieldValues, make_witness, project_fields
+
+_MOST_EXAMPLES = 24
+_MOST_SENT_FIELDS = 60
+_CONSTANT_BITS = (InputKind.FLOAT32, InputKind.FLOAT64)
+
+
+class Evaluated(NamedTuple):
+    """What an exploration says, without terms of the solver."""
+
+    counts: dict[Reaction, int]
+    fields: tuple[FieldSets, ...]
+    examples: tuple[CallbackExample, ...]
+    sent: tuple[SentThrough, ...]
+    unknown: dict[str, int]
+    assumed: tuple[str, ...]
+    left: int
+    seconds: float
+    asked: tuple[str, ...] = ()
+    """Types of messages that the callback had to do with."""
+
+
+def evaluate(exploration: Exploration, names: Mapping[str, Mapping[int, str]], seconds: float = 10.0) -> Evaluated:
+    """Value sets, examples and sent values of an exploration. names: of constants, by type of the field and
+    value. seconds: for the value sets, and again for what is sent."""
+    counts = dict(Counter(path.result for path in exploration.paths))
+    unknown = dict(Counter(path.reason for path in exploration.paths if path.result is Reaction.UNKNOWN))
+    assumed = tuple(sorted({name for path in exploration.paths for name in path.assumed}))
+    fields = tuple(_list_fields(exploration, names, seconds))
+    sent = tuple(_list_sent(exploration, seconds))
+    return Evaluated(
+        counts,
+        fields,
+        tuple(_list_examples(exploration)),
+        sent,
+        unknown,
+        assumed,
+        exploration.left,
+        exploration.seconds,
+    )
+
+
+def _list_fields(exploration: Exploration, names: Mapping[str, Mapping[int, str]], seconds: float) -> list[FieldSets]:
+    found: list[FieldSets] = []
+    for one in project_fields(exploration, seconds):
+        path = one.path.removeprefix("msg.")
+        sign = "int" if one.is_signed else "uint"
+        known = names.get(f"{sign}{one.bits}", {}) if one.kind is InputKind.INTEGER else {}
+        found.append(FieldSets(
+            path, one.kind, one.bits, one.is_signed, dict(one.values), one.surely_unhandled, one.surely_ignored, known,
+        ))  # fmt: skip
+    return found
+
+
+def _list_examples(exploration: Exploration) -> list[CallbackExample]:
+    """One example for each kind of outcome: reaction, crash and line, or what was observed."""
+    kinds = {name: (one.kind, one.bits, one.is_signed) for name, one in exploration.inputs.items()}
+    found: dict[tuple[object, ...], CallbackExample] = {}
+    # A way on which nothing is assumed is the better example.
+    for path in sorted(exploration.paths, key=lambda one: len(one.assumed)):
+        key = path.result, path.crash, path.place if path.crash else "", tuple(sorted({
+            (one.kind, one.name) for one in path.effects
+        })) if path.result is Reaction.HANDLED else ""  # fmt: skip
+        if path.result is Reaction.UNKNOWN or key in found or len(found) >= _MOST_EXAMPLES:
+            continue
+        witness = make_witness(exploration, path)
+        if witness is None:
+            continue
+        effects = tuple(dict.fromkeys(f"{one.kind} {one.name}".strip() for one in path.effects))
+        found[key] = CallbackExample(
+            path.result, witness.values, kinds, path.crash, path.place if path.crash else CodeLine("", 0), path.detail,
+            path.assumed, effects,
+        )  # fmt: skip
+    return sorted(found.values(), key=lambda one: (one.result is not Reaction.CRASH, one.place))
+
+
+def _list_sent(exploration: Exploration, seconds: float) -> list[SentThrough]:
+    """Per publisher, the values of each field over all ways that publish through it."""
+    ways: dict[str, list[tuple[CallbackPath, Sent]]] = {}
+    for path in exploration.paths:
+        for one in path.sent:
+            ways.setdefault(one.publisher, []).append((path, one))
+    is_whole = not exploration.left and not any(path.result is Reaction.UNKNOWN for path in exploration.paths)
+    found: list[SentThrough] = []
+    for publisher, rows in ways.items():
+        kinds: dict[str, tuple[InputKind, int, bool]] = {}
+        for _, one in rows:
+            kinds.update(one.kinds)
+        fields: list[SentValues] = []
+        for path in _list_leaves(kinds)[:_MOST_SENT_FIELDS]:
+            kind = kinds.get(path) or (InputKind.CHARACTER, 8, False)
+            values = _project_sent(exploration, rows, path, kind, seconds / 10)
+            if values is not None:
+                name = path if path in kinds else f"{path}.size"
+                everywhere = all(name in one.values for _, one in rows)
+                fields.append(SentValues(path, *kind, values, is_whole and everywhere))
+        places = tuple(dict.fromkeys(one.place for _, one in rows))
+        found.append(SentThrough(publisher, places, tuple(fields)))
+    return found
+
+
+def _list_leaves(kinds: Mapping[str, tuple[InputKind, int, bool]]) -> list[str]:
+    """Fields that are sent, a text as one of them."""
+    texts = {name[: name.rindex("[")] for name, kind in kinds.items() if kind[0] is InputKind.CHARACTER}
+    found: list[str] = []
+    for name, kind in kinds.items():
+        if kind[0] is InputKind.SIZE and name.removesuffix(".size") in texts:
+            found.append(name.removesuffix(".size"))
+        elif kind[0] is not InputKind.CHARACTER:
+            found.append(name)
+    return found
+
+
+def _project_sent(
+    exploration: Exploration, rows: list[tuple[CallbackPath, Sent]], path: str, kind: tuple[InputKind, int, bool],
+    seconds: float,
+) -> FieldValues | None:  # fmt: skip
+    """The values of one field: of a variable that equals what each way sends."""
+    name = "sent.value"
+    sort = kind[0]
+    added: dict[str, SymbolicInput] = {}
+    paths: list[CallbackPath] = []
+    for way, one in rows:
+        parts = _list_parts(one, path) if sort is InputKind.CHARACTER else [("", path, kind)]
+        terms: list[z3.BoolRef] = []
+        for suffix, leaf, (own, width, signed) in parts:
+            value = one.values.get(leaf)
+            if value is None:
+                break
+            known = added.get(name + suffix)
+            if known is None:
+                term = z3.BitVec(name + suffix, width)
+                known = added[name + suffix] = SymbolicInput(name + suffix, own, width, signed, term, 1 << 20)
+            given = z3.BitVecVal(value, width) if isinstance(value, int) else value
+            if given.size() != width:
+                break
+            terms.append(known.term == given)
+        else:
+            condition = (*way.condition, *terms)
+            paths.append(replace(way, result=Reaction.HANDLED, condition=condition, example={}, shown_by=()))
+    if not paths:
+        return None
+    asked = replace(exploration, inputs={**exploration.inputs, **added}, paths=paths)
+    for one in project_fields(asked, seconds, only=name):
+        return one.values.get(Reaction.HANDLED)
+    return None
+
+
+def _list_parts(sent: Sent, path: str) -> list[tuple[str, str, tuple[InputKind, int, bool]]]:
+    """The size and the bytes of a text that is sent: what comes behind its name, its path, its kind."""
+    found: list[tuple[str, str, tuple[InputKind, int, bool]]] = [(".size", f"{path}.size", (InputKind.SIZE, 64, False))]
+    index = 0
+    while f"{path}[{index}]" in sent.values:
+        found.append((f"[{index}]", f"{path}[{index}]", (InputKind.CHARACTER, 8, False)))
+        index += 1
+    return found

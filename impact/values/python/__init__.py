@@ -1,0 +1,1 @@
+"""Callbacks of Python nodes, run on symbolic messages by their syntax trees."""

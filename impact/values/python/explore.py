@@ -1,0 +1,370 @@
+"""Explores callbacks of Python nodes: makes the node, gives the callback a symbolic message, follows every way."""
+
+from __future__ import annotations
+
+import ast
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import z3
+
+from ..outcomes import Bounds, CallbackPath, CrashKind, Exploration, Reaction
+from .library import make_like
+from .machine import PythonMachine
+from .messages import Messages
+from .modules import FindModule, Handle, ModuleCode, PythonClass, PythonFunction, PythonObject, Scope, Unsettled
+from .run import PythonRun, PythonThrownError
+from .terms import ListValue, NotModelledError, Opaque, Record, SymbolicText, is_number
+
+_KINDS = {
+    "ZeroDivisionError": CrashKind.DIVISION, "IndexError": CrashKind.INDEX, "AssertionError": CrashKind.ASSERTION,
+}  # fmt: skip
+
+
+class CallbackCode(NamedTuple):
+    """Where a callback stands. name: dotted from its module on: `Driver.on_command`. message: `package/Name`, empty for
+    a timer."""
+
+    module: ModuleCode
+    name: str
+    line: int
+    message: str
+
+
+@dataclass(slots=True)
+class _Class:
+    """What the methods of a class do with members of their object. written: names, by the method that sets them; read:
+    the same."""
+
+    written: dict[str, set[str]] = field(default_factory=dict)
+    read: dict[str, set[str]] = field(default_factory=dict)
+
+
+def explore_callback(
+    callback: CallbackCode, messages: Messages, find_module: FindModule, bounds: Bounds
+) -> Exploration:
+    """All ways through a callback within bounds. Nothing of the program runs; what cannot be executed on symbolic
+    values is an unknown way with its reason."""
+    started = time.monotonic()
+    deadline = started + bounds.seconds
+    found = Exploration(bounds=bounds)
+    pending: list[list[bool]] = [[]]
+    while pending:
+        if time.monotonic() > deadline or len(found.paths) >= bounds.paths:
+            break
+        run = PythonRun(pending.pop(), bounds, found.inputs, deadline)
+        path = _take_way(callback, run, messages, find_module)
+        found.instructions += run.steps
+        pending.extend(run.open_ways)
+        if path is not None:
+            found.paths.append(path)
+    found.left = len(pending)
+    found.seconds = time.monotonic() - started
+    return found
+
+
+def _take_way(
+    callback: CallbackCode, run: PythonRun, messages: Messages, find_module: FindModule
+) -> CallbackPath | None:
+    """One way through a callback; None where no input takes it."""
+    modules: dict[str, ModuleCode] = {}
+
+    def find_fresh(name: str) -> ModuleCode | None:
+        # Every way begins with modules as they are when the program starts.
+        if name not in modules:
+            code = find_module(name)
+            if code is None:
+                return None
+            modules[name] = ModuleCode(code.name, code.path, code.tree)
+        return modules[name]
+
+    machine = PythonMachine(run, messages, find_fresh)
+    module = ModuleCode(callback.module.name, callback.module.path, callback.module.tree)
+    modules[module.name] = module
+    watch = _Watch(machine)
+    try:
+        machine.is_quiet = True
+        machine.load(module)
+        owner, function = _find_callback(machine, module, callback)
+        node: PythonObject | None = None
+        if owner is not None:
+            node = _make_node(machine, owner, function.name)
+        _forget_preparation(run)
+        watch.start(node, function)
+        given: list[Any] = [] if node is None else [node]
+        if callback.message:
+            given.append(messages.make_input(run, callback.message, "msg"))
+        machine.is_quiet = False
+        machine.call_function(function, [*given, *_make_others(function, len(given))], {})
+        watch.finish()
+    except PythonThrownError as error:
+        return _make_crash(run, error)
+    except NotModelledError as error:
+        return _make_path(run, Reaction.UNKNOWN, reason=str(error))
+    except RecursionError:
+        return _make_path(run, Reaction.UNKNOWN, reason="nested too deep")
+    except z3.Z3Exception as error:
+        return _make_path(run, Reaction.UNKNOWN, reason=f"the solver refused a term: {str(error)[:80]}")
+    except Exception as error:  # a mistake of the executor is no verdict on the program
+        return _make_path(
+            run, Reaction.UNKNOWN, reason=f"the executor failed: {type(error).__name__}: {str(error)[:80]}"
+        )
+    possible = run.is_possible()
+    if possible is False:
+        return None
+    if possible is None:
+        return _make_path(run, Reaction.UNKNOWN, reason="a condition that the solver could not decide")
+    if run.effects:
+        return _make_path(run, Reaction.HANDLED)
+    if run.not_modelled:
+        names = ", ".join(list(run.not_modelled)[:3])
+        return _make_path(run, Reaction.UNKNOWN, reason=f"what {names} does is not known")
+    return _make_path(run, Reaction.LOG_ONLY if run.logs else Reaction.IGNORED)
+
+
+def _forget_preparation(run: PythonRun) -> None:
+    """What happened while the node was made says nothing about the callback."""
+    run.effects.clear()
+    run.logs.clear()
+    run.sent.clear()
+    run.not_modelled.clear()
+    run.assumed.clear()
+    run.steps = 0
+
+
+def _make_path(run: PythonRun, result: Reaction, **more: Any) -> CallbackPath:
+    return CallbackPath(
+        result, tuple(run.condition), tuple(run.effects), tuple(run.logs), tuple(run.sent), place=run.place,
+        assumed=tuple(run.assumed), **more,
+    )  # fmt: skip
+
+
+def _make_crash(run: PythonRun, error: PythonThrownError) -> CallbackPath | None:
+    possible = run.is_possible()
+    if possible is False:
+        return None
+    if possible is None:
+        return _make_path(
+            run, Reaction.UNKNOWN, reason=f"a condition before {error.name} that the solver could not decide"
+        )
+    kind = find_crash_kind(error.name, error.detail)
+    detail = f"{error.name}: {error.detail}" if error.detail else error.name
+    if error.name == "SystemExit":
+        return _make_path(run, Reaction.HANDLED, detail=detail)
+    return CallbackPath(
+        Reaction.CRASH, tuple(run.condition), tuple(run.effects), tuple(run.logs), tuple(run.sent), kind, error.place,
+        detail, assumed=tuple(run.assumed),
+    )  # fmt: skip
+
+
+def find_crash_kind(name: str, detail: str) -> CrashKind:
+    """The kind of crash that an exception of Python is, by its class and text."""
+    if name in ("TypeError", "AttributeError") and "None" in detail:
+        return CrashKind.NULL
+    if name in ("ValueError", "OverflowError") and "convert float" in detail:
+        return CrashKind.FLOAT_TO_INTEGER
+    return _KINDS.get(name, CrashKind.EXCEPTION)
+
+
+def _find_callback(
+    machine: PythonMachine, module: ModuleCode, callback: CallbackCode
+) -> tuple[PythonClass | None, PythonFunction]:
+    parts = callback.name.split(".")
+    value: Any = module.names.get(parts[0])
+    owner: PythonClass | None = None
+    for part in parts[1:]:
+        if isinstance(value, PythonClass):
+            owner = value
+            value = value.find(part)
+        else:
+            value = None
+    if not isinstance(value, PythonFunction):
+        for node in ast.walk(module.tree):
+            if isinstance(node, ast.Lambda) and node.lineno == callback.line:
+                raise NotModelledError("a callback that is a lambda")
+        raise NotModelledError(f"{callback.name} is not at the top of its module or class")
+    return owner, value
+
+
+def _make_others(function: PythonFunction, given: int) -> list[Any]:
+    """Further arguments of a callback (`callback_args`): nothing is known of them."""
+    arguments = function.node.args
+    wanted = [*arguments.posonlyargs, *arguments.args]
+    needed = wanted[given : len(wanted) - len(arguments.defaults)] if len(wanted) > given else []
+    return [Opaque(one.arg) for one in needed]
+
+
+def _make_node(machine: PythonMachine, cls: PythonClass, callback: str) -> PythonObject:
+    """The object whose method the callback is: its constructor executed as far as that can be, and members that other
+    methods set made symbolic."""
+    node = PythonObject(cls)
+    maker = cls.find("__init__")
+    if isinstance(maker, PythonFunction) and isinstance(maker.node, ast.FunctionDef):
+        arguments = maker.node.args
+        names = [one.arg for one in (*arguments.posonlyargs, *arguments.args)]
+        defaults = arguments.defaults
+        values: dict[str, Any] = {name: Opaque(name) for name in (*names, *[one.arg for one in arguments.kwonlyargs])}
+        for name, default in zip(names[len(names) - len(defaults) :], defaults, strict=True):
+            try:
+                values[name] = machine.evaluate(default, maker.scope)
+            except (NotModelledError, PythonThrownError):
+                values[name] = Opaque(name)
+        if names:
+            values[names[0]] = node
+        for extra, empty in ((arguments.vararg, ListValue([], is_frozen=True)), (arguments.kwarg, {})):
+            if extra is not None:
+                values[extra.arg] = empty
+        scope = Scope(maker.scope.module, values, maker.scope)
+        for statement in maker.node.body:
+            machine.execute_leniently(statement, scope)
+    habits = describe_class(cls)
+    makers = {"__init__", *_list_called_by(cls, "__init__")}
+    for name, methods in sorted(habits.written.items()):
+        if methods <= makers and name in node.members:
+            continue
+        if name not in node.members:
+            continue
+        node.members[name] = _make_state(machine, f"this.{name}", node.members[name])
+    return node
+
+
+def _make_state(machine: PythonMachine, path: str, value: Any) -> Any:
+    """What a member may hold when a message comes: anything of its kind. What began as None may still be that."""
+    if value is None:
+        return Unsettled(path)
+    if is_number(value) or isinstance(value, (str, SymbolicText)):
+        return make_like(machine, path, value)
+    if isinstance(value, Handle):
+        return value
+    return Opaque(path)
+
+
+def describe_class(cls: PythonClass) -> _Class:
+    """Which methods of a class write and read which members."""
+    found = _Class()
+    for one in cls.list_order():
+        for method in one.node.body:
+            if isinstance(method, (ast.FunctionDef, ast.AsyncFunctionDef)):
+                for name, is_written in _list_members(method):
+                    (found.written if is_written else found.read).setdefault(name, set()).add(method.name)
+    return found
+
+
+def _list_members(method: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[tuple[str, bool]]:
+    own = method.args.args[0].arg if method.args.args else ""
+    for node in ast.walk(method):
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == own:
+            yield node.attr, isinstance(node.ctx, ast.Store)
+        elif isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store):
+            inner = node.value
+            if isinstance(inner, ast.Attribute) and isinstance(inner.value, ast.Name) and inner.value.id == own:
+                yield inner.attr, True
+        elif isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Attribute):
+            inner = node.target
+            if isinstance(inner.value, ast.Name) and inner.value.id == own:
+                yield inner.attr, True
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+            inner = node.func.value
+            changes = node.func.attr in (
+                "append",
+                "extend",
+                "pop",
+                "clear",
+                "insert",
+                "add",
+                "update",
+                "popleft",
+                "remove",
+            )
+            if (
+                changes
+                and isinstance(inner, ast.Attribute)
+                and isinstance(inner.value, ast.Name)
+                and inner.value.id == own
+            ):
+                yield inner.attr, True
+
+
+def _list_called_by(cls: PythonClass, name: str) -> set[str]:
+    """Methods that only a method of the same class calls, as far as the class shows."""
+    calls: dict[str, set[str]] = {}
+    for one in cls.list_order():
+        for method in one.node.body:
+            if isinstance(method, ast.FunctionDef):
+                for node in ast.walk(method):
+                    if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self":
+                        calls.setdefault(node.attr, set()).add(method.name)
+    found = {name}
+    while True:
+        more = {called for called, by in calls.items() if by <= found and called not in found and cls.find(called)}
+        called_directly = {
+            node.func.attr
+            for one in cls.list_order()
+            for method in one.node.body
+            if isinstance(method, ast.FunctionDef) and method.name in found
+            for node in ast.walk(method)
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)
+        }
+        more &= called_directly
+        if not more:
+            return found
+        found |= more
+
+
+class _Watch:
+    """Which members of a node the callback leaves changed, of those that something else reads."""
+
+    def __init__(self, machine: PythonMachine):
+        self._machine = machine
+        self._node: PythonObject | None = None
+        self._before: dict[str, Any] = {}
+        self._sizes: dict[str, int] = {}
+        self._names: set[str] = set()
+
+    def start(self, node: PythonObject | None, function: PythonFunction) -> None:
+        """Remembers the members as they are."""
+        if node is None:
+            return
+        habits = describe_class(node.cls)
+        own = function.name
+        self._node = node
+        self._names = {
+            name for name in {*habits.written, *node.members} if habits.read.get(name, set()) - {own, "__init__"}
+        } | {name for name, by in habits.read.items() if own in by and name in habits.written}
+        self._before = dict(node.members)
+        self._sizes = {name: _measure(value) for name, value in node.members.items()}
+
+    def finish(self) -> None:
+        """Notes a changed member as an effect; one that may be as it was is decided on."""
+        if self._node is None:
+            return
+        for name in sorted(self._names):
+            before, after = self._before.get(name), self._node.members.get(name)
+            if isinstance(before, Unsettled) and (
+                after is None or (isinstance(after, Opaque) and after.name == before.path)
+            ):
+                continue
+            if after is before and _measure(after) == self._sizes.get(name, 0):
+                continue
+            if self._differs(before, after):
+                self._machine.run.note_effect("member", name)
+
+    def _differs(self, before: Any, after: Any) -> bool:
+        if is_number(before) and is_number(after):
+            return not self._machine.is_true(self._machine.compare(ast.Eq, before, after))
+        if isinstance(before, (str, SymbolicText)) and isinstance(after, (str, SymbolicText)):
+            return not self._machine.is_true(self._machine.compare(ast.Eq, before, after))
+        return True
+
+
+def _measure(value: Any) -> int:
+    """Something that changes when a list or message is changed in place."""
+    if isinstance(value, ListValue):
+        return hash((len(value.elements), tuple(map(id, value.elements))))
+    if isinstance(value, dict):
+        return hash(tuple((repr(key), id(one)) for key, one in value.items()))
+    if isinstance(value, Record):
+        return hash(tuple((name, id(one)) for name, one in sorted(value.fields.items()) if name != "~path"))
+    return 0

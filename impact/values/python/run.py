@@ -1,0 +1,296 @@
+"""One way through a callback: its decisions, what it did, and the solver that knows which ways there are."""
+
+from __future__ import annotations
+
+import builtins
+import time
+from collections.abc import Sequence
+from typing import Any
+
+import z3
+
+from ..outcomes import NOWHERE, Bounds, CodeLine, InputKind, Observable, Sent, SymbolicInput
+from .terms import (
+    FLOAT32,
+    FLOAT64,
+    NEAREST,
+    ListValue,
+    NotModelledError,
+    Real,
+    SymbolicText,
+    Truth,
+    Whole,
+    count_bits,
+    make_truth,
+)  # fmt: skip
+
+_SOLVER_MILLISECONDS = 1_000
+GAVE_UP = "the solver gave up on a condition, so both ways are followed"
+"""Stands among what is assumed."""
+
+
+class PythonThrownError(Exception):
+    """An exception of the program. name: of its class; bases: names of the classes that catch it as well; value: the
+    object that `as` binds."""
+
+    def __init__(self, name: str, detail: str, place: CodeLine, bases: tuple[str, ...] = (), value: Any = None):
+        super().__init__(name)
+        self.name, self.detail, self.place, self.bases, self.value = name, detail, place, bases, value
+
+    def is_caught_by(self, name: str) -> bool:
+        """Whether `except name` catches it."""
+        if name in (self.name, *self.bases):
+            return True
+        own, other = getattr(builtins, self.name, None), getattr(builtins, name, None)
+        bases = [getattr(builtins, base, None) for base in self.bases]
+        return isinstance(other, type) and any(
+            isinstance(one, type) and issubclass(one, other) for one in (own, *bases)
+        )
+
+
+class PythonRun:
+    """A way that begins with some decisions and goes on by itself. inputs: those of all ways, by path; open_ways: the
+    decisions of ways that branch off this one."""
+
+    def __init__(
+        self, decisions: Sequence[bool], bounds: Bounds, inputs: dict[str, SymbolicInput], deadline: float,
+    ):  # fmt: skip
+        self._decisions, self._taken = decisions, 0
+        self.bounds, self.inputs, self.deadline = bounds, inputs, deadline
+        self.condition: list[z3.BoolRef] = []
+        self.open_ways: list[list[bool]] = []
+        self._trace: list[bool] = []
+        self._solver = z3.Solver()
+        self._solver.set("timeout", _SOLVER_MILLISECONDS)
+        self._model: z3.ModelRef | None = None
+        self._found: z3.ModelRef | None = None
+        self.effects: list[Observable] = []
+        self.logs: list[str] = []
+        self.sent: list[Sent] = []
+        self.assumed: dict[str, None] = {}
+        self.not_modelled: dict[str, None] = {}
+        self.place = NOWHERE
+        self.steps = 0
+        self._fresh: dict[str, int] = {}
+
+    # Decisions.
+
+    def assume(self, term: z3.BoolRef) -> None:
+        """What holds on this way without being asked."""
+        self.condition.append(term)
+        self._solver.add(term)
+
+    def decide(self, condition: Truth | bool) -> bool:
+        """Whether a condition holds on this way; where both can be, the other way is opened."""
+        if not isinstance(condition, Truth):
+            return bool(condition)
+        if self._taken < len(self._decisions):
+            chosen = self._decisions[self._taken]
+            self._taken += 1
+            self._trace.append(chosen)
+            self.assume(condition.term if chosen else z3.Not(condition.term))
+            return chosen
+        chosen = self._choose_way(condition.term)
+        self._taken += 1
+        self._trace.append(chosen)
+        self.assume(condition.term if chosen else z3.Not(condition.term))
+        return chosen
+
+    def _choose_way(self, term: z3.BoolRef) -> bool:
+        """Which way to go on; the other is opened where it can be gone too. The last model saves a question."""
+        negated = z3.Not(term)
+        known = self._model.eval(term, model_completion=True) if self._model is not None else None
+        if known is not None and z3.is_true(known):
+            if self._check(negated):
+                self.open_ways.append([*self._trace, False])
+            return True
+        if known is not None and z3.is_false(known):
+            kept = self._model
+            if not self._check(term):
+                return False
+            self.open_ways.append([*self._trace, True])
+            self._model = kept
+            return False
+        if not self._check(term):
+            return False
+        model = self._found
+        if self._check(negated):
+            self.open_ways.append([*self._trace, False])
+        self._model = model
+        return True
+
+    def choose(self, name: str) -> bool:
+        """One of two ways that nothing is known about; both are followed. name: what is assumed."""
+        self.assumed[name] = None
+        if self._taken < len(self._decisions):
+            chosen = self._decisions[self._taken]
+        else:
+            chosen = True
+            self.open_ways.append([*self._trace, False])
+        self._taken += 1
+        self._trace.append(chosen)
+        return chosen
+
+    def _check(self, term: z3.BoolRef) -> bool:
+        answer = self._solver.check(term)
+        self._found = self._solver.model() if answer == z3.sat else None
+        if answer == z3.unknown:
+            self._found = guess_model([*self.condition, term])
+            if self._found is None:
+                self.assumed[GAVE_UP] = None
+        return answer != z3.unsat
+
+    def is_possible(self) -> bool | None:
+        """Whether some input takes this way; None where the solver does not know."""
+        answer = self._solver.check()
+        if answer == z3.unknown:
+            return True if guess_model(self.condition) is not None else None
+        return answer == z3.sat
+
+    def count_step(self) -> None:
+        """Raises NotModelledError where the bounds are reached."""
+        self.steps += 1
+        if self.steps > 50_000:
+            raise NotModelledError("more than 50,000 steps")
+        if not self.steps & 63 and time.monotonic() > self.deadline:
+            raise NotModelledError("the time limit")
+
+    def throw(self, name: str, detail: str = "") -> PythonThrownError:
+        """The exception of Python of a name at the present place, to be raised."""
+        return PythonThrownError(name, detail, self.place)
+
+    # Inputs.
+
+    def _get_input(self, path: str, kind: InputKind, bits: int, is_signed: bool, most: int = 0) -> z3.BitVecRef:
+        known = self.inputs.get(path)
+        if known is None:
+            known = SymbolicInput(path, kind, bits, is_signed, z3.BitVec(path, bits), most)
+            self.inputs[path] = known
+        return known.term
+
+    def get_whole(self, path: str, bits: int, is_signed: bool) -> Whole:
+        """The input of a path, a whole number of some bits."""
+        term = self._get_input(path, InputKind.INTEGER, bits, is_signed)
+        if is_signed:
+            return Whole(term, -(1 << (bits - 1)), (1 << (bits - 1)) - 1)
+        high = (1 << bits) - 1
+        wide = count_bits(0, high)
+        return Whole(z3.ZeroExt(wide - bits, term) if wide > bits else term, 0, high)
+
+    def get_truth(self, path: str) -> Truth:
+        """The input of a path, true or false."""
+        term = self._get_input(path, InputKind.BOOLEAN, 8, False)
+        self._assume_once(path, z3.ULE(term, 1))
+        return Truth(term != 0)
+
+    def get_real(self, path: str, bits: int) -> Real:
+        """The input of a path, a float of 32 or 64 bits."""
+        if bits == 32:
+            term = self._get_input(path, InputKind.FLOAT32, 32, True)
+            single = z3.fpBVToFP(term, FLOAT32)
+            return Real(z3.fpFPToFP(NEAREST, single, FLOAT64), single=single)
+        return Real(z3.fpBVToFP(self._get_input(path, InputKind.FLOAT64, 64, True), FLOAT64))
+
+    def get_size(self, path: str, most: int) -> Whole:
+        """The size of what stands at a path, 0 to most."""
+        name = f"{path}.size"
+        term = self._get_input(name, InputKind.SIZE, 64, False, most)
+        self._assume_once(name, z3.ULE(term, most))
+        bits = count_bits(0, most)
+        return Whole(z3.Extract(bits - 1, 0, term), 0, most)
+
+    def get_text(self, path: str) -> SymbolicText:
+        """The input of a path, a text of ASCII."""
+        size = self.get_size(path, self.bounds.text)
+        characters: list[z3.BitVecRef | int] = []
+        for index in range(self.bounds.text):
+            name = f"{path}[{index}]"
+            term = self._get_input(name, InputKind.CHARACTER, 8, False)
+            self._assume_once(name, z3.ULE(term, 127))
+            characters.append(term)
+        return SymbolicText(tuple(characters), size)
+
+    def _assume_once(self, name: str, term: z3.BoolRef) -> None:
+        if name not in self._fresh:
+            self._fresh[name] = 1
+            self.assume(term)
+
+    def make_name(self, stem: str) -> str:
+        """A name for what the callback asks of its surroundings, another one each time: `~now`, `~now#2`."""
+        count = self._fresh[stem] = self._fresh.get(stem, 0) + 1
+        return stem if count == 1 else f"{stem}#{count}"
+
+    # Sizes.
+
+    def fix_text(self, text: SymbolicText) -> tuple[z3.BitVecRef | int, ...]:
+        """The characters of a text whose size is decided on."""
+        if text.size is None:
+            return text.characters
+        return text.characters[: self.fix_size(text.size)]
+
+    def fix_items(self, items: ListValue) -> list[Any]:
+        """The elements of a list whose size is decided on; from then on it is known."""
+        if items.size is not None:
+            count = self.fix_size(items.size)
+            del items.elements[count:]
+            items.size = None
+        return items.elements
+
+    def fix_size(self, size: Whole | int) -> int:
+        """One number for a size on this way."""
+        if not isinstance(size, Whole):
+            return int(size)
+        for count in range(size.low, size.high):
+            if self.decide(make_truth(size.term == count)):
+                return count
+        return size.high
+
+    # What others see.
+
+    def note_effect(self, kind: str, name: str) -> None:
+        """Something that others can observe."""
+        self.effects.append(Observable(kind, name, self.place))
+
+
+def guess_model(condition: Sequence[z3.BoolRef]) -> z3.ModelRef | None:
+    """An assignment of simple values to the floats of a condition that a solver then completes; None where none of a
+    few fits. Products and quotients of floats are hard for a solver, and easy once most of them are numbers."""
+    terms: dict[str, z3.ExprRef] = {}
+    for term in condition:
+        for one in list_variables(term):
+            terms[one.decl().name()] = one
+    wide = [one for one in terms.values() if z3.is_bv(one) and one.size() in (32, 64)]
+    solver = z3.Solver()
+    solver.set("timeout", 200)
+    solver.add(*condition)
+    for numbers in _GUESSES:
+        for at in range(len(numbers)):
+            given = [one == _encode(numbers[(index + at) % len(numbers)], one.size()) for index, one in enumerate(wide)]
+            if solver.check(*given) == z3.sat:
+                return solver.model()
+    return None
+
+
+_GUESSES = ((0.0,), (1.0,), (1.0, 0.0), (0.5, 2.0), (-1.0,), (-1.0, 1.0, 10.0), (float("nan"),))
+
+
+def _encode(number: float, bits: int) -> z3.BitVecRef:
+    import struct
+
+    if bits == 32:
+        return z3.BitVecVal(struct.unpack("<I", struct.pack("<f", number))[0], 32)
+    return z3.BitVecVal(struct.unpack("<Q", struct.pack("<d", number))[0], 64)
+
+
+def list_variables(term: z3.ExprRef) -> list[z3.ExprRef]:
+    """The inputs that a term speaks of."""
+    found: dict[str, z3.ExprRef] = {}
+    stack, seen = [term], set()
+    while stack:
+        one = stack.pop()
+        if one.get_id() not in seen:
+            seen.add(one.get_id())
+            if z3.is_const(one) and one.decl().kind() == z3.Z3_OP_UNINTERPRETED:
+                found[one.decl().name()] = one
+            stack.extend(one.children())
+    return list(found.values())

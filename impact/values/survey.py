@@ -1,0 +1,364 @@
+"""All callbacks of a workspace that were asked for: explored within bounds, and their examples replayed if wanted."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import NamedTuple
+
+from ...edges.processes import Died, run_forked
+from ..facts.interface import Section
+from ..facts.python import source
+from ..model.flow.graph import Graph
+from ..model.flow.workspace import list_code
+from ..model.workspace import Workspace
+from .answers import CallbackAnswer, CallbackExample, ValuesReport
+from .evaluate import Evaluated, evaluate
+from .harness.callbacks import CppCallback, list_callbacks
+from .harness.compile import CannotCompile
+from .harness.fuzzing import run_fuzzer
+from .harness.interfaces import KnownInterfaces, list_constants
+from .harness.replay import Replayed, is_confirmed
+from .harness.session import HarnessSession, PreparedCallback, is_asked
+from .ir.explore import explore
+from .outcomes import Bounds, CodeLine, Exploration, InputKind, Reaction, Witness
+from .python.explore import CallbackCode, explore_callback
+from .python.messages import Messages
+from .python.modules import ModuleCode
+from .python.replay import ReplayPlace, list_folders, replay_witness
+from .witnesses import WitnessRecord, format_publish_command, write_tests
+
+KINDS = ("subscriber", "service", "timer", "action")
+_ANY_NUMBER = (InputKind.INTEGER, 64, False)
+Progress = Callable[[int, int], None]
+
+
+class Asked(NamedTuple):
+    """Which callbacks: nodes by id or its last part, topics by name, callbacks by name or its last part; all where
+    nothing is named. kinds: of KINDS."""
+
+    nodes: Collection[str] = ()
+    topics: Collection[str] = ()
+    callbacks: Collection[str] = ()
+    kinds: Collection[str] = ("subscriber",)
+    places: Collection[tuple[str, int]] = ()
+    """Path and line of the calls that make them, where only some are asked for."""
+
+
+@dataclass
+class _Target:
+    """A callback that can be explored. prepared: its harness; code: of a Python one; types: of messages that it has
+    to do with, known once it was explored."""
+
+    answer: CallbackAnswer
+    names: Mapping[str, Mapping[int, str]]
+    prepared: PreparedCallback | None = None
+    code: CallbackCode | None = None
+    types: tuple[str, ...] = ()
+
+
+class Survey:
+    """Explores the callbacks of one workspace. root: its folder on disk, for what is compiled and run."""
+
+    def __init__(self, root: Path, workspace: Workspace, graph: Graph, bounds: Bounds):
+        self.root, self.workspace, self.graph, self.bounds = root.resolve(), workspace, graph, bounds
+        self._definitions = KnownInterfaces(workspace)
+
+    def explore(
+        self, asked: Asked, *, replays: bool = False, fuzz_seconds: float = 0.0, jobs: int = 1,
+        progress: Progress | None = None,
+    ) -> ValuesReport:  # fmt: skip
+        """What was found out about the callbacks that are asked for, in the order of their places. replays: whether
+        examples are run for real, which compiles and runs code of the workspace, apart from this process. fuzz_seconds:
+        for which each C++ callback is fuzzed besides; 0 for not."""
+        found: list[CallbackAnswer] = []
+        offline: list[bool] = []
+        with HarnessSession(self.root, self.workspace, self.graph, self.bounds) as session:
+            targets = [*self._list_cpp(session, asked), *self._list_python(asked)]
+            ready = [number for number, one in enumerate(targets) if not one.answer.reason]
+            found = [one.answer for one in targets]
+            results = run_forked(_explore_target, ready, jobs, targets, self._make_messages(), self._modules)
+            for done, (number, result) in enumerate(results, 1):
+                target = targets[number]
+                answer = _read_result(target.answer, result, self.root)
+                if isinstance(result, Evaluated):
+                    target.types = result.asked
+                if replays and answer.examples:
+                    answer, is_offline = self._replay(target, answer)
+                    offline.append(is_offline)
+                if fuzz_seconds and target.prepared is not None:
+                    answer = _run_fuzzer(target.prepared, answer, fuzz_seconds)
+                found[number] = answer
+                if progress is not None:
+                    progress(done, len(ready))
+        found.sort(key=lambda one: (one.path, one.line, one.callback))
+        return ValuesReport(tuple(found), self.bounds, replays, all(offline) if offline else None)
+
+    def replay(self, records: Sequence[WitnessRecord]) -> list[tuple[WitnessRecord, Replayed]]:
+        """Runs recorded witnesses for real, as explore() does with its own. Those whose callback is not there any
+        longer, or cannot be compiled, are unknown, with the reason."""
+        found: list[tuple[WitnessRecord, Replayed]] = []
+        with HarnessSession(self.root, self.workspace, self.graph, self.bounds) as session:
+            for record in records:
+                asked = Asked(callbacks=(record.callback,), kinds=(record.kind,))
+                rows = [*self._list_cpp(session, asked), *self._list_python(asked)]
+                target = next((one for one in rows if one.answer.path == record.path), rows[0] if rows else None)
+                if target is None:
+                    seen = Replayed(Reaction.UNKNOWN, reason=f"no callback {record.callback} in {record.path}")
+                elif target.answer.reason:
+                    seen = Replayed(Reaction.UNKNOWN, reason=target.answer.reason)
+                else:
+                    seen = self._replay_one(target, record.witness)
+                found.append((record, seen))
+        return found
+
+    def _replay_one(self, target: _Target, witness: Witness) -> Replayed:
+        if target.prepared is not None:
+            try:
+                return target.prepared.replay([witness])[0]
+            except CannotCompile as error:
+                return Replayed(Reaction.UNKNOWN, reason=str(error))
+        assert target.code is not None
+        messages = self._make_messages()
+        # A short look tells which messages the callback has to do with, and what its members are.
+        known = explore_callback(target.code, messages, self._modules.get, replace(self.bounds, paths=50, seconds=5.0))
+        kinds = {name: (one.kind, one.bits, one.is_signed) for name, one in known.inputs.items()}
+        target.types = tuple(messages.asked)
+        return self._replay_python(target, witness, CallbackExample(witness.result, witness.values, kinds))
+
+    def emit_klee(self, asked: Asked, folder: Path) -> list[Path]:
+        """Writes the harnesses of the C++ callbacks that are asked for, for KLEE; gives their folders."""
+        made: list[Path] = []
+        with HarnessSession(self.root, self.workspace, self.graph, self.bounds) as session:
+            for number, target in enumerate(self._list_cpp(session, asked)):
+                if target.prepared is not None and not target.answer.reason:
+                    name = "".join(each if each.isalnum() else "_" for each in target.answer.callback)
+                    made.append(target.prepared.emit_klee(folder / f"{number:02d}_{name}").folder)
+        return made
+
+    def write_tests(self, records: Sequence[WitnessRecord]) -> dict[str, str]:
+        """Regression tests for witnesses, by file name."""
+        return write_tests(self._definitions, records)
+
+    def write_commands(self, records: Sequence[WitnessRecord]) -> list[str]:
+        """Commands that send witnesses to a running node."""
+        return [command for one in records if (command := format_publish_command(self._definitions, one))]
+
+    def list_places(self, files: Collection[str]) -> frozenset[tuple[str, int]]:
+        """Where callbacks of some files are given to the framework."""
+        rows = [one for each in ("cpp", "python") for one in list_callbacks(self.workspace, self.graph, each)]
+        return frozenset((one.path, one.line) for one in rows if _get_file(one) in files)
+
+    # C++.
+
+    def _list_cpp(self, session: HarnessSession, asked: Asked) -> Iterator[_Target]:
+        prepared = session.prepare(nodes=asked.nodes, topics=asked.topics, callbacks=asked.callbacks, kinds=asked.kinds)
+        for one in prepared:
+            path, line = one.function_place
+            answer = CallbackAnswer(
+                one.callback, one.kind, "cpp", path, line, one.message_type, one.topics, one.nodes, self.bounds,
+                one.reason, stood_for=one.stood_for,
+            )  # fmt: skip
+            yield _Target(answer, _name_constants(one.constants), one)
+
+    # Python.
+
+    @cached_property
+    def _modules(self) -> dict[str, ModuleCode]:
+        """The modules of the workspace's Python code, by dotted name."""
+        tree = self.workspace.extraction.tree
+        paths = [
+            path for path in list_code(self.workspace) if path.endswith(".py") or "." not in path.rpartition("/")[2]
+        ]
+        packages = {path.rpartition("/")[0] for path in paths if path.endswith("__init__.py")}
+        found: dict[str, ModuleCode] = {}
+        for path in paths:
+            try:
+                parsed = source.read(tree.read(path))
+            except (OSError, ValueError):
+                continue
+            if parsed.tree is None:
+                continue
+            name = _name_module(path, packages)
+            code = ModuleCode(name, path, parsed.tree)
+            found.setdefault(name, code)
+            found[f"~{path}"] = code
+        return found
+
+    def _make_messages(self) -> Messages:
+        def find_section(type_: str) -> Section | None:
+            package, _, name = type_.partition("/")
+            interface = self._definitions.find(f"{package}/msg/{name}")
+            return interface.sections[0] if interface is not None and interface.sections else None
+
+        return Messages(find_section, self.workspace.ros)
+
+    def _list_python(self, asked: Asked) -> Iterator[_Target]:
+        for one in list_callbacks(self.workspace, self.graph, "python"):
+            if not is_asked(one, asked.nodes, asked.topics, asked.callbacks, asked.kinds, asked.places):
+                continue
+            function = one.function
+            path, line = (function.source.path, function.facts.line) if function is not None else (one.path, one.line)
+            answer = CallbackAnswer(
+                one.name, one.kind, "python", path, line, one.message_type, one.topics, one.nodes, self.bounds,
+                _refuse(one),
+            )  # fmt: skip
+            if answer.reason:
+                yield _Target(answer, {})
+                continue
+            module = self._modules.get(f"~{path}")
+            if module is None:
+                yield _Target(replace(answer, reason=f"{path} cannot be read"), {})
+                continue
+            code = CallbackCode(module, one.name, line, one.message_type)
+            yield _Target(answer, self._name_python_constants(one.message_type), code=code)
+
+    def _name_python_constants(self, type_: str) -> Mapping[str, Mapping[int, str]]:
+        package, _, name = type_.partition("/")
+        return _name_constants(list_constants(self._definitions, f"{package}/msg/{name}")) if name else {}
+
+    # Replays.
+
+    def _replay(self, target: _Target, answer: CallbackAnswer) -> tuple[CallbackAnswer, bool]:
+        witnesses = [Witness(dict(one.values), one.result, one.crash, one.place) for one in answer.examples]
+        if target.prepared is not None:
+            try:
+                seen = target.prepared.replay(witnesses)
+            except CannotCompile as error:
+                note = f"not replayed: {error}"
+                return replace(answer, examples=tuple(replace(one, note=note) for one in answer.examples)), True
+        else:
+            seen = [self._replay_python(target, one, answer.examples[at]) for at, one in enumerate(witnesses)]
+        examples = [
+            _judge(example, witness, one)
+            for example, witness, one in zip(answer.examples, witnesses, seen, strict=True)
+        ]
+        return replace(answer, examples=tuple(examples)), all(one.is_isolated for one in seen)
+
+    def _replay_python(self, target: _Target, witness: Witness, example: CallbackExample) -> Replayed:
+        assert target.code is not None
+        path = self.root / target.answer.path
+        folders = list_folders([self.root / code.path for code in self._modules.values()])
+        own = list_folders([path])
+        place = ReplayPlace(
+            self.root, (*own, *[one for one in folders if one not in own]), target.code.module.name,
+            target.answer.callback, target.answer.message_type, path,
+        )  # fmt: skip
+        with tempfile.TemporaryDirectory(prefix="rosimpact-replay-") as folder:
+            messages = self._make_messages()
+            messages.asked.update(target.types)
+            return replay_witness(place, witness, example.kinds, messages, Path(folder))
+
+
+def _get_file(callback: CppCallback) -> str:
+    return callback.function.source.path if callback.function is not None else callback.path
+
+
+def _run_fuzzer(prepared: PreparedCallback, answer: CallbackAnswer, seconds: float) -> CallbackAnswer:
+    """An answer with the crashes that a fuzzer found besides."""
+    try:
+        crashes = run_fuzzer(prepared, seconds)
+    except CannotCompile as error:
+        return replace(answer, assumed=(*answer.assumed, f"not fuzzed: {error}"))
+    known = {(one.crash, one.place.line) for one in answer.examples}
+    kinds = dict(next((one.kinds for one in answer.examples), {}))
+    more = [
+        CallbackExample(
+            Reaction.CRASH, one.witness.values, {path: kinds.get(path, _ANY_NUMBER) for path in one.witness.values},
+            one.witness.crash, one.witness.place, "found by fuzzing", confirmed=True,
+        )
+        for one in crashes
+        if (one.witness.crash, one.witness.place.line) not in known
+    ]  # fmt: skip
+    counts = dict(answer.counts)
+    if more:
+        counts[Reaction.CRASH] = counts.get(Reaction.CRASH, 0) + len(more)
+    return replace(answer, examples=(*more, *answer.examples), counts=counts)
+
+
+def make_records(report: ValuesReport) -> list[WitnessRecord]:
+    """The examples of a report as records that can be written to a file."""
+    return [
+        WitnessRecord(
+            one.kind, one.nodes[0] if one.nodes else "", one.topics[0] if one.topics else "", one.callback,
+            one.message_type, one.path, one.line,
+            Witness(dict(each.values), each.result, each.crash, each.place), one.language,
+        )
+        for one in report.callbacks
+        for each in one.examples
+    ]  # fmt: skip
+
+
+def _refuse(callback: CppCallback) -> str:
+    """Why a Python callback is not explored; empty where it is."""
+    place = f"{callback.path}:{callback.line}"
+    if callback.function is None:
+        return f"{place}: the callback is not known"
+    if callback.kind in ("service", "action"):
+        return f"{place}: callbacks of a {callback.kind} in Python are not explored"
+    return "" if callback.message_type or callback.kind == "timer" else f"{place}: the type of its message is not known"
+
+
+def _explore_target(
+    targets: Sequence[_Target], messages: Messages, modules: Mapping[str, ModuleCode], number: int
+) -> Evaluated:
+    """What one callback does; runs in a process of its own."""
+    target = targets[number]
+    found: Exploration
+    if target.prepared is not None:
+        bounds = target.answer.bounds
+        found = explore(target.prepared.ir_texts, target.prepared.entry, bounds, target.prepared.is_workspace_file)
+    else:
+        assert target.code is not None
+        found = explore_callback(target.code, messages, modules.get, target.answer.bounds)
+        return evaluate(found, target.names)._replace(asked=tuple(sorted(messages.asked)))
+    return evaluate(found, target.names)
+
+
+def _read_result(answer: CallbackAnswer, result: Evaluated | Died, root: Path) -> CallbackAnswer:
+    if isinstance(result, Died):
+        return replace(answer, reason=f"the exploration ended early: {result.why}")
+    examples = tuple(replace(one, place=_shorten_place(one.place, root)) for one in result.examples)
+    sent = tuple(replace(one, places=tuple(_shorten_place(place, root) for place in one.places)) for one in result.sent)
+    return replace(
+        answer, counts=result.counts, fields=result.fields, examples=examples, sent=sent,
+        unknown=result.unknown, assumed=result.assumed, left=result.left, seconds=result.seconds,
+    )  # fmt: skip
+
+
+def _shorten_place(place: CodeLine, root: Path) -> CodeLine:
+    """A line of the debug information as the workspace has it."""
+    return CodeLine(place.path.removeprefix(f"{root}/"), place.line)
+
+
+def _judge(example: CallbackExample, witness: Witness, seen: Replayed) -> CallbackExample:
+    if seen.result.value == "unknown":
+        return replace(example, note=f"not replayed: {seen.reason or seen.detail}")
+    if is_confirmed(witness, seen):
+        return replace(example, confirmed=True)
+    place = f" at {seen.place.path}:{seen.place.line}" if seen.place.line else ""
+    what = f"{seen.crash.value}{place}" if seen.crash is not None else seen.result.value
+    return replace(example, confirmed=False, note=f"the replay saw: {what}")
+
+
+def _name_constants(constants: Mapping[str, tuple[str, str]]) -> Mapping[str, Mapping[int, str]]:
+    """Names of constants by the type of the fields that they are for, `uint8`."""
+    found: dict[str, dict[int, str]] = {}
+    for name, (type_, value) in constants.items():
+        with suppress(ValueError):
+            found.setdefault({"byte": "int8", "char": "uint8"}.get(type_, type_), {}).setdefault(int(value, 0), name)
+    return found
+
+
+def _name_module(path: str, packages: Collection[str]) -> str:
+    """The dotted name of a file: from the outermost folder with an __init__.py on."""
+    folder, _, name = path.rpartition("/")
+    parts = [] if name == "__init__.py" else [name.removesuffix(".py")]
+    while folder in packages:
+        folder, _, last = folder.rpartition("/")
+        parts.insert(0, last)
+    return ".".join(parts)

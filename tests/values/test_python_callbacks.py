@@ -1,0 +1,317 @@
+"""Callbacks of Python nodes: what they handle, ignore and crash on, and that the real function does the same."""
+
+import ast
+import textwrap
+from collections import Counter
+
+import pytest
+import z3
+from rosimpact.impact.facts.interface import extract
+from rosimpact.impact.values.harness.replay import is_confirmed
+from rosimpact.impact.values.outcomes import Bounds, CrashKind, Reaction, Witness
+from rosimpact.impact.values.python.explore import CallbackCode, explore_callback
+from rosimpact.impact.values.python.messages import Messages
+from rosimpact.impact.values.python.modules import ModuleCode
+from rosimpact.impact.values.python.replay import ReplayPlace, replay_witness
+
+MESSAGES = {
+    "std_msgs/String": "string data\n",
+    "std_msgs/Int32": "int32 data\n",
+    "std_msgs/UInt8": "uint8 data\n",
+    "std_msgs/Bool": "bool data\n",
+    "std_msgs/Float64": "float64 data\n",
+    "std_msgs/Header": "uint32 seq\ntime stamp\nstring frame_id\n",
+    "geometry_msgs/Vector3": "float64 x\nfloat64 y\nfloat64 z\n",
+    "geometry_msgs/Twist": "Vector3 linear\nVector3 angular\n",
+    "geometry_msgs/PointStamped": "std_msgs/Header header\nVector3 point\n",
+    "sensor_msgs/LaserScan": "float32 range_min\nfloat32 range_max\nfloat32[] ranges\n",
+    "sensor_msgs/JointState": "string[] name\nfloat64[] position\n",
+    "lamp_msgs/Lamp": "uint8 OFF=0\nuint8 GREEN=1\nuint8 RED=3\nuint8 value\nint32[3] parts\n",
+}
+HEAD = """
+import math
+import rospy
+from std_msgs.msg import String, Int32, Float64, Bool, UInt8
+from geometry_msgs.msg import Twist
+from lamp_msgs.msg import Lamp
+from motor_driver import MotorDriver
+from std_srvs.srv import Empty
+
+
+class Broken(Exception):
+    pass
+
+
+class Worse(Broken):
+    pass
+
+
+class Driver(object):
+    def __init__(self):
+        self.pub = rospy.Publisher("out", Int32, queue_size=1)
+        self.drive = rospy.Publisher("drive", Twist, queue_size=1)
+        self.reset = rospy.ServiceProxy("reset", Empty)
+        self.enabled = False
+        self.last = 0
+        self.target = None
+        self.table = {"start": 1, "stop": 2}
+        self.limits = [1, 2, 3]
+        self.rate = rospy.get_param("~rate", 10)
+        self.motor = MotorDriver()
+
+    def enable(self, msg):
+        self.enabled = msg.data
+
+    def remember(self, msg):
+        self.target = msg
+
+    def tell(self):
+        return self.enabled, self.last, self.target
+
+    def check(self, value):
+        if value > 100:
+            raise Worse("too much")
+        return value
+
+"""
+
+
+def explore(body, message, tmp_path, bounds=None):
+    """The exploration of `callback`, and what replays say of one witness per kind of outcome."""
+    text = HEAD + textwrap.indent(textwrap.dedent(body), "    ")
+    (tmp_path / "driver.py").write_text(text)
+    sections = {name: extract(found.encode(), "msg").sections[0] for name, found in MESSAGES.items()}
+    messages = Messages(sections.get, 1)
+    module = ModuleCode("driver", "driver.py", ast.parse(text))
+    found = explore_callback(
+        CallbackCode(module, "Driver.callback", 0, message), messages, lambda name: None, bounds or Bounds(text=5)
+    )
+    kinds = {name: (one.kind, one.bits, one.is_signed) for name, one in found.inputs.items()}
+    seen = {}
+    for path in found.paths:
+        key = path.result, path.crash
+        if path.result is Reaction.UNKNOWN or key in seen:
+            continue
+        solver = z3.Solver()
+        solver.add(*path.condition)
+        assert solver.check() == z3.sat
+        model = solver.model()
+        values = {name: model.eval(one.term, True).as_long() for name, one in found.inputs.items()}
+        witness = Witness(values, path.result, path.crash, path.place)
+        place = ReplayPlace(tmp_path, (tmp_path,), "driver", "Driver.callback", message, tmp_path / "driver.py")
+        replayed = replay_witness(place, witness, kinds, messages, tmp_path)
+        seen[key] = is_confirmed(witness, replayed) or replayed
+    return found, seen
+
+
+def solve(found, result, name, crash=None):
+    """Some values of an input that lead to a reaction, as numbers without sign."""
+    values = set()
+    for path in found.paths:
+        if path.result is result and (crash is None or path.crash is crash):
+            solver = z3.Solver()
+            solver.add(*path.condition)
+            while solver.check() == z3.sat and len(values) < 20:
+                value = solver.model().eval(found.inputs[name].term, True).as_long()
+                values.add(value)
+                solver.add(found.inputs[name].term != value)
+    return values
+
+
+CRASHES = {
+    "division": ("self.pub.publish(10 // msg.data)", "std_msgs/Int32", CrashKind.DIVISION),
+    "modulo": ("self.pub.publish(10 % (msg.data - 4))", "std_msgs/Int32", CrashKind.DIVISION),
+    "float division": ("self.pub.publish(1.0 / msg.data)", "std_msgs/Float64", CrashKind.DIVISION),
+    "index": ("self.pub.publish(self.limits[msg.data])", "std_msgs/UInt8", CrashKind.INDEX),
+    "negative index": ("self.pub.publish(self.limits[-msg.data])", "std_msgs/UInt8", CrashKind.INDEX),
+    "empty array": ("self.pub.publish(int(msg.ranges[0] > 1))", "sensor_msgs/LaserScan", CrashKind.INDEX),
+    "two arrays": (
+        "for index, name in enumerate(msg.name):\n        self.pub.publish(msg.position[index] > 0)",
+        "sensor_msgs/JointState", CrashKind.INDEX,
+    ),
+    "pop": ("found = [one for one in msg.ranges if one > 2]\n    self.pub.publish(found.pop() > 3)",
+            "sensor_msgs/LaserScan", CrashKind.INDEX),
+    "key": ("self.pub.publish(self.table[msg.data])", "std_msgs/String", CrashKind.EXCEPTION),
+    "int of a text": ("self.pub.publish(int(msg.data))", "std_msgs/String", CrashKind.EXCEPTION),
+    "part of a text": (
+        "if msg.data.startswith('go'):\n        self.pub.publish(msg.data.split(':')[1] == 'x')",
+        "std_msgs/String", CrashKind.INDEX,
+    ),
+    "unpacking": ("left, right = msg.data.split(',')\n    self.pub.publish(left == right)", "std_msgs/String",
+                  CrashKind.EXCEPTION),
+    "NaN to int": ("self.pub.publish(int(msg.data))", "std_msgs/Float64", CrashKind.FLOAT_TO_INTEGER),
+    "rounding": ("self.pub.publish(round(min(msg.data, 5.0)))", "std_msgs/Float64", CrashKind.FLOAT_TO_INTEGER),
+    "root": ("self.pub.publish(math.sqrt(msg.data) > 1)", "std_msgs/Float64", CrashKind.EXCEPTION),
+    "sine of infinity": ("self.pub.publish(math.sin(msg.data) > 0)", "std_msgs/Float64", CrashKind.EXCEPTION),
+    "None": (
+        "self.pub.publish(self.find(msg.data).data)\n\ndef find(self, key):\n    if key > 3:\n        return Int32(1)",
+        "std_msgs/Int32", CrashKind.NULL,
+    ),
+    "assertion": ("assert msg.data < 5\n    self.pub.publish(1)", "std_msgs/Int32", CrashKind.ASSERTION),
+    "raised": ("self.pub.publish(self.check(msg.data))", "std_msgs/Int32", CrashKind.EXCEPTION),
+    "minimum of nothing": ("self.pub.publish(min(msg.ranges) < 1)", "sensor_msgs/LaserScan", CrashKind.EXCEPTION),
+    "field that is none": ("if msg.data == 7:\n        msg.missing = 1\n    self.pub.publish(1)", "std_msgs/Int32",
+                           CrashKind.EXCEPTION),
+    "nested": ("self.pub.publish(1 / msg.linear.x > 2)", "geometry_msgs/Twist", CrashKind.DIVISION),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CRASHES)
+def test_a_crash_is_found_and_seen_in_the_real_function(name, tmp_path):
+    body, message, kind = CRASHES[name]
+    found, replays = explore(f"def callback(self, msg):\n    {body}\n", message, tmp_path)
+    assert kind in {path.crash for path in found.paths}
+    assert set(replays.values()) == {True}, replays
+    assert all(path.place.path == "driver.py" and path.place.line > 0 for path in found.paths if path.crash)
+
+
+SAFE = {
+    "checked division": ("if msg.data != 0:\n        self.pub.publish(10 // msg.data)", "std_msgs/Int32"),
+    "caught": ("try:\n        self.pub.publish(int(msg.data))\n    except ValueError:\n        rospy.logwarn('no')",
+               "std_msgs/String"),
+    "caught by a base": (
+        "try:\n        self.pub.publish(self.check(msg.data))\n    except Broken:\n        rospy.logerr('no')",
+        "std_msgs/Int32",
+    ),
+    "checked size": ("if len(msg.ranges) > 1:\n        self.pub.publish(msg.ranges[1] > 1)", "sensor_msgs/LaserScan"),
+    "half of a size": ("if msg.ranges:\n        self.pub.publish(msg.ranges[len(msg.ranges) // 2] > 1)",
+                       "sensor_msgs/LaserScan"),
+    "finite": ("if math.isfinite(msg.data) and abs(msg.data) < 1000:\n        self.pub.publish(int(msg.data))",
+               "std_msgs/Float64"),
+    "quotient of integers": ("if msg.data:\n        self.pub.publish(math.sin(1.0 / msg.data) > 0)", "std_msgs/Int32"),
+    "get": ("self.pub.publish(self.table.get(msg.data, 0))", "std_msgs/String"),
+    "fixed array": ("self.pub.publish(msg.parts[2])", "lamp_msgs/Lamp"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SAFE)
+def test_what_is_guarded_is_no_crash(name, tmp_path):
+    body, message = SAFE[name]
+    found, replays = explore(f"def callback(self, msg):\n    {body}\n", message, tmp_path)
+    assert Counter(path.crash for path in found.paths if path.result is Reaction.CRASH) == {}
+    assert Reaction.HANDLED in {path.result for path in found.paths}
+    assert set(replays.values()) == {True}, replays
+
+
+def test_an_enumeration_is_handled_logged_and_ignored(tmp_path):
+    body = """
+    def callback(self, msg):
+        if msg.value == Lamp.GREEN:
+            self.pub.publish(1)
+        elif msg.value in (Lamp.OFF, 9):
+            self.reset()
+        elif msg.value == Lamp.RED:
+            rospy.logwarn("not yet")
+    """
+    found, replays = explore(body, "lamp_msgs/Lamp", tmp_path)
+    assert solve(found, Reaction.HANDLED, "msg.value") == {0, 1, 9}
+    assert solve(found, Reaction.LOG_ONLY, "msg.value") == {3}
+    assert not solve(found, Reaction.IGNORED, "msg.value") & {0, 1, 3, 9}
+    assert set(replays.values()) == {True} and len(replays) == 3
+
+
+def test_commands_of_a_text(tmp_path):
+    body = """
+    def callback(self, msg):
+        command = msg.data.strip().lower()
+        if command == "go":
+            self.pub.publish(1)
+        elif command in self.table:
+            self.pub.publish(self.table[command])
+    """
+    found, replays = explore(body, "std_msgs/String", tmp_path, Bounds(text=5, paths=2000))
+    assert {path.crash for path in found.paths} == {None}
+    assert solve(found, Reaction.HANDLED, "msg.data.size") >= {2, 4, 5}
+    assert set(replays.values()) == {True}
+
+
+def test_a_member_that_others_read_is_an_effect_where_it_changes(tmp_path):
+    body = """
+    def callback(self, msg):
+        if msg.data > 3:
+            self.last = msg.data
+    """
+    found, replays = explore(body, "std_msgs/Int32", tmp_path)
+    assert {effect.kind for path in found.paths for effect in path.effects} == {"member"}
+    same = [path for path in found.paths if path.result is Reaction.IGNORED]
+    assert same and set(replays.values()) == {True}
+    solver = z3.Solver()
+    solver.add(found.inputs["msg.data"].term == 7, z3.Or(*[z3.And(*path.condition) for path in same]))
+    assert solver.check() == z3.sat
+    assert solver.model().eval(z3.Extract(31, 0, found.inputs["this.last"].term)).as_long() == 7
+
+
+def test_state_of_the_node_is_any_that_its_methods_leave(tmp_path):
+    body = """
+    def callback(self, msg):
+        if not self.enabled:
+            return
+        self.pub.publish(msg.data)
+    """
+    found, _ = explore(body, "std_msgs/Int32", tmp_path)
+    assert Counter(path.result for path in found.paths) == {Reaction.HANDLED: 1, Reaction.IGNORED: 1}
+    assert "this.enabled" in found.inputs
+
+
+def test_what_a_foreign_object_does_is_unknown_and_never_ignored(tmp_path):
+    body = """
+    def callback(self, msg):
+        if msg.data > 0:
+            self.motor.turn(msg.data)
+    """
+    found, _ = explore(body, "std_msgs/Int32", tmp_path)
+    assert Counter(path.result for path in found.paths) == {Reaction.UNKNOWN: 1, Reaction.IGNORED: 1}
+    assert "turn" in next(path.reason for path in found.paths if path.result is Reaction.UNKNOWN)
+
+
+def test_a_message_that_is_sent_has_its_values(tmp_path):
+    body = """
+    def callback(self, msg):
+        out = Twist()
+        out.linear.x = 0.5 if msg.data else -0.5
+        out.angular.z = max(-1.0, min(1.0, 0.25))
+        self.drive.publish(out)
+    """
+    found, _ = explore(body, "std_msgs/Bool", tmp_path)
+    sent = [path.sent[0] for path in found.paths]
+    assert {one.publisher for one in sent} == {"drive"}
+    assert {one.values["linear.x"] for one in sent} == {0x3FE0000000000000, 0xBFE0000000000000}
+    assert {one.values["angular.z"] for one in sent} == {0x3FD0000000000000}
+    assert {one.values["linear.y"] for one in sent} == {0}
+
+
+def test_match_and_loops_with_bounds(tmp_path):
+    body = """
+    def callback(self, msg):
+        count = msg.data
+        while count > 0:
+            count -= 1
+        match msg.data:
+            case 1 | 2:
+                self.pub.publish(1)
+            case _:
+                pass
+    """
+    found, _ = explore(body, "std_msgs/Int32", tmp_path, Bounds(loops=4))
+    reasons = {path.reason for path in found.paths if path.result is Reaction.UNKNOWN}
+    assert reasons == {"a loop of more than 4 rounds"}
+    assert solve(found, Reaction.HANDLED, "msg.data") == {1, 2}
+
+
+def test_an_endless_loop_is_stopped_in_the_replay(tmp_path, monkeypatch):
+    monkeypatch.setattr("rosimpact.impact.values.python.replay._SECONDS", 2.0)
+    (tmp_path / "driver.py").write_text(HEAD + "    def callback(self, msg):\n        while True:\n            pass\n")
+    messages = Messages({"std_msgs/Int32": extract(b"int32 data\n", "msg").sections[0]}.get, 1)
+    place = ReplayPlace(tmp_path, (tmp_path,), "driver", "Driver.callback", "std_msgs/Int32", tmp_path / "driver.py")
+    witness = Witness({"msg.data": 1}, Reaction.CRASH, CrashKind.ENDLESS, replayed_place := ("", 0))
+    seen = replay_witness(place, witness, {}, messages, tmp_path)
+    assert (seen.result, seen.crash) == (Reaction.CRASH, CrashKind.ENDLESS) and replayed_place == ("", 0)
+
+
+def test_a_module_that_cannot_be_loaded_is_said(tmp_path):
+    (tmp_path / "driver.py").write_text("import os\nraise RuntimeError('no robot')\n")
+    messages = Messages({"std_msgs/Int32": extract(b"int32 data\n", "msg").sections[0]}.get, 1)
+    place = ReplayPlace(tmp_path, (tmp_path,), "driver", "Driver.callback", "std_msgs/Int32", tmp_path / "driver.py")
+    seen = replay_witness(place, Witness({}, Reaction.HANDLED, None, ("", 0)), {}, messages, tmp_path)
+    assert seen.reason == "RuntimeError: no robot" and seen.place == ("driver.py", 2)
+    assert not is_confirmed(Witness({}, Reaction.HANDLED, None, ("", 0)), seen)
