@@ -1,8 +1,11 @@
 """Headers of messages: what is generated, and that it compiles in both forms."""
 
 import pytest
-from harness_workspaces import needs_clang
+from harness_workspaces import needs_clang, write_workspace
+from rosimpact.impact.analysis.session import open_tree
 from rosimpact.impact.facts.interface import extract
+from rosimpact.impact.facts.store import Store
+from rosimpact.impact.model.flow.workspace import link_for_flow
 from rosimpact.impact.values.harness.facade import find_facade, list_folders
 from rosimpact.impact.values.harness.interfaces import KnownInterfaces, list_constants, write_headers
 from rosimpact.impact.values.harness.toolchain import find_clang, run_compiler
@@ -111,6 +114,19 @@ def test_own_interfaces_of_ros2():
 def test_constants():
     assert list_constants(make(2, OWN), "own/msg/Motor")["LOW"] == ("int8", "-128")
     assert list_constants(make(2, OWN), "own/msg/Nothing") == {}
+
+
+def test_configuration_of_dynamic_reconfigure(tmp_path):
+    cfg = (
+        "from dynamic_reconfigure.parameter_generator_catkin import *\ngen = ParameterGenerator()\n"
+        'gen.add("max_vel", double_t, 0, "d", 0.5, 0, 1)\ngen.add("turns", int_t, 0, "d", 1, 0, 9)\n'
+        'exit(gen.generate("machine", "machine", "Machine"))\n'
+    )
+    root = write_workspace(tmp_path, 1, {"cfg/Machine.cfg": cfg, "src/a.cpp": "int main() {}\n"}, "src/a.cpp")
+    workspace = link_for_flow(open_tree(root, ""), Store(None), 1)
+    text = KnownInterfaces(workspace).write_configuration("machine/MachineConfig.h")
+    assert "struct MachineConfig" in text and "double max_vel{};" in text and "int turns{};" in text
+    assert KnownInterfaces(workspace).write_configuration("machine/OtherConfig.h") == ""
 
 
 @needs_clang

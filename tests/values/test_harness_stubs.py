@@ -56,6 +56,47 @@ def test_members_are_of_what_is_stood_for():
     assert not table.learn(parse_errors("/ws/a.cpp:3:10: error: no member named 'start' in 'own::Class'"))
 
 
+@pytest.mark.parametrize(
+    "line, flag",
+    [
+        ("  VENDOR_ALIGNED_NEW", "-DVENDOR_ALIGNED_NEW="),
+        ("VENDOR_ALIGNED_NEW(Own, 3);", "-DVENDOR_ALIGNED_NEW(...)="),
+        ("VENDOR_ALIGNED_NEW own;", None),
+    ],
+)
+def test_macro_on_a_line_of_its_own(line, flag):
+    table = StubTable(lambda path, number: line)
+    assert table.learn(parse_errors("/ws/a.cpp:1:3: error: unknown type name 'VENDOR_ALIGNED_NEW'"))
+    assert table.flags == ({flag} if flag else set())
+
+
+def test_base_of_a_class_of_the_code():
+    line = "class Own : public vendor::Base {"
+    table = StubTable(lambda path, number: line, list_bases=lambda name: ["vendor::Base"] if name == "ns::Own" else [])
+    assert table.learn(parse_errors("/ws/a.cpp:1:28: error: expected class name"))
+    assert "namespace vendor { struct Base : ri::Anything" in table.render()
+    assert table.learn(parse_errors("/ws/a.cpp:9:1: error: no member named 'enable' in 'ns::Own'"))
+    assert "ri::Anything enable;" in table.render()
+
+
+def test_what_is_switched_on_is_a_number():
+    lines = {
+        1: "void f(const vendor::Event &event) {",
+        2: "  switch (event.state) {",
+        3: "    case vendor::Event::Down: break;",
+    }
+    table = StubTable(lambda path, number: lines.get(number, ""))
+    for line, column, text in (
+        (1, 22, "no type named 'Event' in namespace 'vendor'"),
+        (2, 17, "no member named 'state' in 'vendor::Event'"),
+        (3, 25, "no member named 'Down' in 'vendor::Event'"),
+        (2, 3, "statement requires expression of integer type ('ri::Anything' invalid)"),
+    ):
+        assert table.learn(parse_errors(f"/ws/a.cpp:{line}:{column}: error: {text}"))
+    assert "static inline ri::Number state;" in table.render()
+    assert "static constexpr int Down = " in table.render()
+
+
 def test_macros_come_first():
     table, _ = learn(
         (4, 32, "variable has incomplete type 'class VENDOR_EXPORT'"), (9, 1, "use of undeclared identifier 'member_'")

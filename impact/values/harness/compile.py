@@ -32,7 +32,7 @@ from .toolchain import (
 )
 
 _ROUNDS_OF_HEADERS = 8
-_ROUNDS_OF_STUBS = 12
+_ROUNDS_OF_STUBS = 20
 _HEADER_BYTES = 4_000_000
 _SYSTEM = ("/usr/include", "/usr/local/include")
 _HEADERS = (".h", ".hpp", ".hh", ".hxx", ".ipp", ".inl", ".tpp")
@@ -83,7 +83,7 @@ class HarnessFiles(NamedTuple):
 
 class Workshop:
     """Compiles units of one workspace in a folder of its own. root: of the workspace; packages: folders of its
-    packages, relative to it; is_own: whether its code declares a name in a scope."""
+    packages, relative to it; is_own, list_bases: of its code, as StubTable has them."""
 
     def __init__(
         self,
@@ -93,11 +93,12 @@ class Workshop:
         packages: Iterable[str],
         bounds: Bounds,
         is_own: Callable[[str, str], bool] = lambda scope, name: False,
+        list_bases: Callable[[str], Sequence[str]] = lambda name: (),
     ):
         self.root, self.folder, self.definitions, self.bounds = root.resolve(), folder, definitions, bounds
         self.include = folder / "include"
         self.include.mkdir(parents=True, exist_ok=True)
-        self._is_own = is_own
+        self._is_own, self._list_bases = is_own, list_bases
         self._folders: dict[str, None] = {}
         self._system: dict[str, None] = {}
         for package in packages:
@@ -131,6 +132,10 @@ class Workshop:
             self._write(write_headers(self.definitions, key))
             if (self.include / header).exists():
                 return
+        configuration = self.definitions.write_configuration(header)
+        if configuration:
+            self._write({header: configuration})
+            return
         facade = find_facade(header, self.definitions.ros, unit.boost)
         if facade:
             self._write({header: f"#pragma once\n#include <{facade}>\n"})
@@ -243,7 +248,7 @@ class Workshop:
         folder = self.folder / unit.name
         folder.mkdir(parents=True, exist_ok=True)
         path = folder / "harness.cpp"
-        unit.stubs = StubTable(self._read_line, self._is_own)
+        unit.stubs = StubTable(self._read_line, self._is_own, self._list_bases)
         self._store(unit, path)
         self._find_headers(unit, clang, path)
         first: CompileError | None = None

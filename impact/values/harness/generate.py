@@ -94,13 +94,24 @@ class HarnessWriter:
     def _write_built(self, callback: CppCallback) -> Iterable[str]:
         """The entries that construct the node, or run main."""
         site = callback.site
-        cls = self.reader.find_class(site)
+        cls = self._find_built(callback)
         # What is given in a class is best had by its object; in main or a function, by running main.
         if cls is not None:
             for types in self._list_constructors(cls):
-                yield self._build_object(callback, cls, types)
+                # Who is given the callback as an argument would be given none.
+                if not any(re.search(r"function\s*<|[Cc]allback", each) for each in types):
+                    yield self._build_object(callback, cls, types)
         elif get_tail(site.name) == "main" or "lambda" in site.name or self._has_main(site.source.path):
             yield self._run_main(callback)
+
+    def _find_built(self, callback: CppCallback) -> Cls | None:
+        """The class whose object subscribes: that of the site, or that of the callback where the site is in a helper
+        that it is handed to."""
+        cls, own = self.reader.find_class(callback.site), self.reader.find_class(callback.function)
+        if cls is None or own is None or own.key == cls.key or own.name.startswith(f"{cls.name}::"):
+            return cls
+        bases = {get_tail(each) for each in self.reader.list_bases(cls)}
+        return cls if own.parts[-1] in bases else own
 
     def _list_constructors(self, cls: Cls) -> list[list[str]]:
         known = self.reader.list_constructors(cls)
@@ -138,8 +149,8 @@ class HarnessWriter:
         if bases & set(_NODES) or "enable_shared_from_this" in bases:
             arguments = ", ".join(self._spell_argument(each) for each in types)
             lines += [
-                f"  static auto made = std::shared_ptr<{own}>(new {own}({arguments}));",
-                "  return made.get();",
+                f"  auto *made = new std::shared_ptr<{own}>(new {own}({arguments}));",
+                "  return made->get();",
                 "}",
             ]
         else:
@@ -159,6 +170,9 @@ class HarnessWriter:
         """What is called after the constructor, so that the callback is given to the framework."""
         found = []
         name = get_tail(self._find_outer(site).name)
+        owner = self.reader.find_class(site)
+        if owner is not None and owner.key != cls.key and name != "onInit":
+            name = cls.parts[-1]  # the constructor, or what comes after it, leads to the site
         if "LifecycleNode" in bases:
             found += [
                 "node->on_configure(rclcpp_lifecycle::State(1));",
@@ -167,7 +181,7 @@ class HarnessWriter:
             if name in ("on_configure", "on_activate"):
                 return found
         if name in (cls.parts[-1], "main"):
-            return found
+            return [*found, "node->onInit();"] if self.reader.has_method(cls, "onInit") else found
         if name == "onInit":
             return [*found, "node->onInit();"]
         if self.reader.has_method(cls, "onInit") and name != "onInit":
@@ -206,7 +220,7 @@ class HarnessWriter:
         lines = [f"static void ri_prepare_RI_TAG_{way}(void *self) {{", "  (void)self;"]
         if own is not None:
             lines.append(f"  auto *node = static_cast<{own} *>(self); (void)node;")
-            cls = self.reader.find_class(callback.site)
+            cls = self._find_built(callback)
             members = self.reader.list_members(cls, callback.function) if cls is not None else []
             lines += _write_state(members, "node->", "this.", every=False)
         lines += _write_state(

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from functools import cached_property
 
 from ...facts.interface import PRIMITIVES, TIMES, Constant, Field, Interface, Section, make_full_name
 from ...model.flow.definitions import make_key
+from ...model.flow.parameter_terms import list_configurations
 from ...model.workspace import Workspace
 from ...targets.surface.fields import make_snake_case
 from ...targets.surface.store import load_shipped
@@ -36,6 +36,8 @@ _KEYWORDS = frozenset((
     "typename", "union", "unsigned", "using", "virtual", "void", "volatile", "while", "xor",
 ))  # fmt: skip
 _SECTIONS = {"request": "Request", "response": "Response", "goal": "Goal", "result": "Result", "feedback": "Feedback"}
+_CONFIGURATION = re.compile(r"(\w+)/(\w+)Config\.h")
+_CONFIGURED = {"bool": "bool", "integer": "int", "double": "double"}
 _HEADER_1 = re.compile(r"(\w+)/(\w+)\.h")
 _HEADER_2 = re.compile(r"(\w+)/(msg|srv|action)/(?:detail/)?(\w+?)(?:__(?:struct|traits|builder|type_support))?\.hpp")
 
@@ -44,6 +46,7 @@ class KnownInterfaces:
     """The interfaces of a workspace and of released packages."""
 
     def __init__(self, workspace: Workspace):
+        self._workspace = workspace
         self.ros = workspace.ros
         self._own: dict[str, dict[str, Interface]] = {}
         for package in workspace:
@@ -84,11 +87,6 @@ class KnownInterfaces:
             return Interface("msg", (Section("message", fields, ()),))
         return None
 
-    @cached_property
-    def by_snake(self) -> dict[tuple[str, str, str], str]:
-        """What was looked up already: package, folder and name of a header of ROS 2 to the key."""
-        return {}
-
     def find_key_of_header(self, header: str) -> str:
         """The key of the interface whose generated header has a path, empty for none."""
         if self.ros == 1:
@@ -111,9 +109,25 @@ class KnownInterfaces:
                 return f"{package}/{name}"
         return ""
 
-    def has_package(self, package: str) -> bool:
-        """Whether the interfaces of a package are known."""
-        return bool(self.list_of(package))
+    def write_configuration(self, header: str) -> str:
+        """The header that dynamic_reconfigure generates of a `.cfg` file of the workspace, empty for any other."""
+        found = _CONFIGURATION.fullmatch(header)
+        if found is None or self.ros != 1:
+            return ""
+        package, name = found.groups()
+        rows = {one.name: one.type for _, one in list_configurations(self._workspace).get((package, name), ())}
+        if not rows:
+            return ""
+        fields = "".join(f"  {_CONFIGURED.get(type_, 'std::string')} {field}{{}};\n" for field, type_ in rows.items())
+        visits = " ".join(f'visit("{field}", message.{field});' for field in rows)
+        return (
+            f"#pragma once\n#include <ros/ri_message.h>\nnamespace {package} {{\nstruct {name}Config {{\n"
+            f"  using ri_is_message = void;\n{fields}"
+            f"  template <class V, class M> static void ri_each(V &visit, M &message) {{ {visits} }}\n"
+            f"  static {name}Config __getDefault__() {{ return {{}}; }}\n"
+            f"  static {name}Config __getMin__() {{ return {{}}; }}\n"
+            f"  static {name}Config __getMax__() {{ return {{}}; }}\n}};\n}}\n"
+        )
 
 
 _ACTION_PARTS: dict[str, tuple[tuple[str, str], ...]] = {

@@ -13,7 +13,7 @@ from pathlib import Path
 from ....edges.groups import group_pairs
 from ...model.flow.graph import Graph
 from ...model.workspace import Workspace
-from ..outcomes import Bounds, Witness
+from ..outcomes import NOWHERE, Bounds, Reaction, Witness
 from .callbacks import ClassReader, CppCallback, list_cpp_callbacks
 from .compile import CannotCompile, HarnessFiles, SourceUnit, Workshop
 from .generate import Harness, HarnessEntry, HarnessWriter
@@ -69,6 +69,15 @@ class PreparedCallback:
         program = self.workshop.build_replay(self.units)
         return replay(program, entry or self.entry, [one.values for one in witnesses], self.workshop.root, seconds)
 
+    def choose_entry(self) -> str:
+        """The first entry by which the callback is reached natively, with every input zero; the first of all where it
+        is reached by none. Raises CannotCompile."""
+        nothing = Witness({}, Reaction.UNKNOWN, None, NOWHERE)
+        for name in (self.entry, *(one.name for one in self.others)):
+            if self.replay([nothing], name)[0].begun:
+                return name
+        return self.entry
+
     def emit_klee(self, folder: Path, entry: str = "") -> HarnessFiles:
         """Writes the harness for KLEE into a folder. Raises CannotCompile."""
         if self.workshop is None or not self.units:
@@ -90,7 +99,7 @@ class HarnessSession:
         self.definitions = KnownInterfaces(workspace)
         self.workspace, self.graph = workspace, graph
         packages = [package.path for package in workspace]
-        self.workshop = Workshop(root, folder, self.definitions, packages, self.bounds, self._is_own)
+        self.workshop = Workshop(root, folder, self.definitions, packages, self.bounds, self._is_own, self._list_bases)
         self._further: dict[str, tuple[SourceUnit, str] | str] = {}
 
     def _is_own(self, scope: str, name: str) -> bool:
@@ -99,6 +108,10 @@ class HarnessSession:
             return name in code.classes or name in code.by_tail
         found = (*code.classes.get(name, ()), *code.by_tail.get(name, ()))
         return any(_ends_like(each.name, f"{scope}::{name}", "::") for each in found)
+
+    def _list_bases(self, name: str) -> list[str]:
+        found = self.reader.code.classes.get(name.rpartition("::")[2], ())
+        return [base for one in found if _ends_like(name, one.name, "::") for base in self.reader.list_bases(one)]
 
     def __enter__(self) -> HarnessSession:
         return self

@@ -36,20 +36,34 @@ def parse_errors(output: str) -> list[CompileError]:
 
 class StubTable:
     """What is declared so far. read_line: a line of a file, counted from 1, empty where there is none. is_own: whether
-    the code itself declares a name in a scope, so that it is not for us to declare."""
+    the code itself declares a name in a scope, so that it is not for us to declare. list_bases: the bases of a class
+    of the code, as written."""
 
     def __init__(
-        self, read_line: Callable[[str, int], str], is_own: Callable[[str, str], bool] = lambda scope, name: False
+        self,
+        read_line: Callable[[str, int], str],
+        is_own: Callable[[str, str], bool] = lambda scope, name: False,
+        list_bases: Callable[[str], Sequence[str]] = lambda name: (),
     ):
-        self._read_line, self._is_own = read_line, is_own
+        self._read_line, self._is_own, self._list_bases = read_line, is_own, list_bases
         # Scope and name to what it is: `namespace`, `type`, `template`, `function`, `variable`, `constant`.
         self._names: dict[tuple[str, str], str] = {}
-        # Class to its members and what these are: `member`, `function`, `type`.
+        # Class to its members and what these are: `member`, `function`, `type`, `constant`, `number`.
         self._members: dict[str, dict[str, str]] = {}
         self.flags: set[str] = set()
 
     def __bool__(self) -> bool:
         return bool(self._names or self._members)
+
+    def _is_type(self, full: str) -> bool:
+        scope, _, last = full.rpartition("::")
+        return self._names.get((scope, last)) in ("type", "template")
+
+    def _find_type(self, written: str) -> str:
+        """What is stood for under a name as it is written somewhere, empty for nothing."""
+        written = _strip_arguments(written).removeprefix("::")
+        full = (f"{scope}::{name}".lstrip(":") for scope, name in self._names)
+        return next((one for one in full if self._is_type(one) and f"::{one}".endswith(f"::{written}")), "")
 
     @property
     def has_hooks(self) -> bool:
@@ -83,6 +97,10 @@ class StubTable:
             return not known
         if "expected namespace name" in text or "is not a namespace name" in text:
             return self._learn_namespace(error)
+        if text.startswith("expected class name"):
+            return self._learn_base(error)
+        if text.startswith("statement requires expression of integer type") and "ri::Anything" in text:
+            return self._learn_number(error)
         if not quoted:
             return False
         name = quoted[0]
@@ -96,17 +114,37 @@ class StubTable:
             if "in namespace" in text or "in the global namespace" in text:
                 return self._add_name(quoted[1], name, self._guess(error))
             return self._add_member(quoted[1], name, self._guess(error))
+        if text.startswith("unknown type name") and (macro := self._find_macro(error, name)):
+            known = macro in self.flags
+            self.flags.add(macro)
+            return not known
         if text.startswith("unknown type name"):
             return self._add_name("", name, "template" if self._peek(error, name).startswith("<") else "type")
         if text.startswith(("use of undeclared identifier", "unknown class name", "undeclared")):
             return self._add_name("", name, self._guess(error))
-        if text.startswith("expected class name"):
-            return self._learn_base(error)
         if "unexpected namespace name" in text or "unexpected type name" in text:
             return self._add_name("", name, "type")
         if "template template" in text or "template argument for template type parameter must be a type" in text:
             return False
         return False
+
+    def _learn_number(self, error: CompileError) -> bool:
+        """What a `switch` asks for is a number."""
+        found = re.search(r"switch\s*\(.*?(\w+)\s*\)", self._read_line(error.path, error.line))
+        if found is None:
+            return False
+        owners = [each for each, rows in self._members.items() if rows.get(found[1]) == "member"]
+        for owner in owners:
+            self._members[owner][found[1]] = "number"
+        return bool(owners)
+
+    def _find_macro(self, error: CompileError, name: str) -> str:
+        """The flag that makes a macro nothing, where a word in capitals is a line of its own; empty for no macro."""
+        line = self._read_line(error.path, error.line).strip().rstrip(";")
+        if not re.fullmatch(r"[A-Z][A-Z0-9]*_[A-Z0-9_]+", name) or not line.startswith(name):
+            return ""
+        rest = line[len(name) :].strip()
+        return f"-D{name}=" if not rest else f"-D{name}(...)=" if rest.startswith("(") and rest.endswith(")") else ""
 
     def _learn_namespace(self, error: CompileError) -> bool:
         line = self._read_line(error.path, error.line)
@@ -190,14 +228,15 @@ class StubTable:
 
     def _add_member(self, owner: str, name: str, kind: str) -> bool:
         owner = _strip_arguments(owner).replace("const ", "").strip(" &*").removeprefix("::")
-        scope, _, last = owner.rpartition("::")
         if not _NAME.fullmatch(name):
             return False
-        if owner not in _HOOKS and self._names.get((scope, last)) not in ("type", "template"):
-            return False
+        if owner not in _HOOKS and not self._is_type(owner):
+            owner = next((one for base in self._list_bases(owner) if (one := self._find_type(base))), "")
+            if not owner:
+                return False
         members = self._members.setdefault(owner, {})
-        kind = {"template": "function", "function": "function", "type": "type"}.get(kind, "member")
-        if name in members and (members[name] == kind or kind == "member"):
+        kind = {"template": "function", "variable": "member", "namespace": "type"}.get(kind, kind)
+        if name in members and (members[name] in (kind, "number") or kind == "member"):
             return False
         members[name] = kind
         return True
@@ -246,10 +285,14 @@ class StubTable:
             elif kind == "function":
                 body = f'{{ ri::unknown("{owner}::{name}"); return {{}}; }}'
                 rows.append(f"template <class... RiM, class... RiB> static ri::Anything {name}(RiB &&...) {body}")
+            elif kind == "constant":
+                rows.append(f"static constexpr int {name} = {_make_number(owner + name)};")
+            elif kind == "number":
+                rows.append(f"static inline ri::Number {name};")
             elif owner == "ri::Anything":
                 rows.append(f"static Anything {name};")
             else:
-                rows.append(f"ri::Anything {name};")
+                rows.append(f"static inline ri::Anything {name};")
         return rows
 
     def _define_members(self) -> list[str]:

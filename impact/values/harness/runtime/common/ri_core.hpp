@@ -1,20 +1,29 @@
 // What facades, messages and harnesses share: inputs and sent values by type, callbacks that were given to the
 // framework, and what stands for anything that is not known.
 #pragma once
+#include <unistd.h>
+
+#include <algorithm>
 #include <array>
 #include <cassert>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <deque>
+#include <fstream>
 #include <functional>
+#include <iomanip>
+#include <iostream>
+#include <limits>
 #include <list>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <new>
+#include <numeric>
 #include <optional>
 #include <ostream>
 #include <set>
@@ -56,6 +65,13 @@ struct Stream {
 
 struct Anything;
 template <class T> T &make_something();
+// A number that nothing is known of.
+struct Number {
+  operator int() const { unknown("a number of a header that is not here"); return 0; }
+  template <class A> Number &operator=(const A &) { unknown("a number of a header that is not here"); return *this; }
+};
+template <class T> struct is_initializer_list : std::false_type {};
+template <class T> struct is_initializer_list<std::initializer_list<T>> : std::true_type {};
 
 struct Anything {
   const char *name = "something of a header that is not here";
@@ -78,7 +94,10 @@ struct Anything {
   Anything operator-() const { unknown(name); return *this; }
   Anything *begin() const { unknown(name); return const_cast<Anything *>(this); }
   Anything *end() const { return const_cast<Anything *>(this); }
-  template <class T, class = std::enable_if_t<!std::is_base_of<Anything, T>::value && !std::is_reference<T>::value>>
+  // Not to what would make an assignment to a text ambiguous.
+  template <class T, class = std::enable_if_t<!std::is_base_of<Anything, T>::value && !std::is_reference<T>::value &&
+                                              !std::is_same<T, char>::value && !std::is_same<T, const char *>::value &&
+                                              !is_initializer_list<T>::value>>
   operator T() const { unknown(name); return make_something<std::remove_cv_t<T>>(); }
 #ifdef RI_EXTRA_ri_Anything
   RI_EXTRA_ri_Anything
@@ -490,8 +509,12 @@ template <class T> bool find_parameter(const char *name, T &value) {
 template <class T> struct PointedTo { using type = void; };
 template <class T> struct PointedTo<std::shared_ptr<T>> { using type = T; };
 
+template <class T> inline constexpr bool can_give =
+    std::is_pointer<T>::value || std::is_default_constructible<T>::value || std::is_constructible<T, std::string>::value ||
+    !std::is_void<typename PointedTo<T>::type>::value;
+
 // An argument of a constructor or of a function that subscribes.
-template <class T> T &give_argument() {
+template <class T, class = std::enable_if_t<can_give<T>>> T &give_argument() {
   if constexpr (std::is_pointer<T>::value) {
     using Inner = std::remove_cv_t<std::remove_pointer_t<T>>;
     static T made = nullptr;
@@ -508,8 +531,7 @@ template <class T> T &give_argument() {
     else { static T made; return made; }
   }
   else if constexpr (std::is_default_constructible<T>::value) { static T made{}; return made; }
-  else if constexpr (std::is_constructible<T, std::string>::value) { static T made{std::string("node")}; return made; }
-  else { static_assert(std::is_default_constructible<T>::value, "an argument of this type is not made"); }
+  else { static T made{std::string("node")}; return made; }
 }
 
 template <class B, class N, class... A> void make_base(N *node, A &&...a) {

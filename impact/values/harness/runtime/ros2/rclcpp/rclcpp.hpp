@@ -171,6 +171,7 @@ struct KeepLast : QoSInitialization { explicit KeepLast(size_t d, bool = true) {
 struct KeepAll : QoSInitialization {};
 struct QoS {
   size_t ri_depth = 10;
+  QoS() = default;
   QoS(size_t depth) : ri_depth(depth) {}
   QoS(const QoSInitialization &from) : ri_depth(from.depth) {}
   QoS(const QoSInitialization &from, const rmw_qos_profile_t &) : ri_depth(from.depth) {}
