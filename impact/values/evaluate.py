@@ -12,6 +12,7 @@ import z3
 from .answers import CallbackExample, FieldSets, SentThrough, SentValues
 from .outcomes import CallbackPath, CodeLine, Exploration, InputKind, Reaction, Sent, SymbolicInput
 from .projection import FieldValues, make_witness, project_fields
+from .sent_values import project_sent_float
 
 _MOST_EXAMPLES = 24
 _MOST_SENT_FIELDS = 60
@@ -131,6 +132,9 @@ def _project_sent(
     """The values of one field: of a variable that equals what each way sends."""
     name = "sent.value"
     sort = kind[0]
+    if sort in _CONSTANT_BITS:
+        # Clamps and products are bounded without the solver.
+        return project_sent_float(exploration, rows, path, seconds)
     added: dict[str, SymbolicInput] = {}
     paths: list[CallbackPath] = []
     for way, one in rows:

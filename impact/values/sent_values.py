@@ -17,7 +17,7 @@ import z3
 from .ir.ranges import Ranges, narrow_floats
 from .ir.solving import SolverTimeout, Solving
 from .ir.terms import make_float, pack_float, read_float_bits, read_signed, unpack_float
-from .outcomes import CallbackPath, CodeLine, Exploration, InputKind
+from .outcomes import CallbackPath, CodeLine, Exploration, InputKind, Sent
 from .projection import FieldValues, Number, make_solving, merge_spans
 
 _FLOATS = (InputKind.FLOAT32, InputKind.FLOAT64)
@@ -72,6 +72,23 @@ def list_sent_fields(exploration: Exploration, seconds: float = 10.0) -> list[Se
         )
         for (publisher, name), each in collected.items()
     ]  # fmt: skip
+
+
+def project_sent_float(
+    exploration: Exploration, rows: Sequence[tuple[CallbackPath, Sent]], name: str, seconds: float
+) -> FieldValues | None:
+    """The values of one field that is a float, over paths that send it; None where none says what it sends."""
+    known = [(path, sent) for path, sent in rows if name in sent.values]
+    if not known:
+        return None
+    collected = _Collected(*known[0][1].kinds[name])
+    for path, sent in known:
+        value = sent.values[name]
+        if isinstance(value, int):
+            collected.numbers.add(value)
+        else:
+            collected.terms.append((path, value))
+    return _find_values(collected, make_solving(exploration, time.monotonic() + seconds))
 
 
 def _find_values(collected: _Collected, solving: Solving) -> FieldValues:
