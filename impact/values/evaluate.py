@@ -12,10 +12,10 @@ import z3
 from .answers import CallbackExample, FieldSets, SentThrough, SentValues
 from .outcomes import CallbackPath, CodeLine, Exploration, InputKind, Reaction, Sent, SymbolicInput
 from .projection import FieldValues, make_witness, project_fields
+from .sent_values import project_sent_number
 
 _MOST_EXAMPLES = 24
 _MOST_SENT_FIELDS = 60
-_CONSTANT_BITS = (InputKind.FLOAT32, InputKind.FLOAT64)
 
 
 class Evaluated(NamedTuple):
@@ -131,10 +131,12 @@ def _project_sent(
     """The values of one field: of a variable that equals what each way sends."""
     name = "sent.value"
     sort = kind[0]
+    if sort is not InputKind.CHARACTER:
+        return project_sent_number(exploration, rows, path, seconds)
     added: dict[str, SymbolicInput] = {}
     paths: list[CallbackPath] = []
     for way, one in rows:
-        parts = _list_parts(one, path) if sort is InputKind.CHARACTER else [("", path, kind)]
+        parts = _list_parts(one, path)
         terms: list[z3.BoolRef] = []
         for suffix, leaf, (own, width, signed) in parts:
             value = one.values.get(leaf)

@@ -1,4 +1,4 @@
-"""What a callback publishes: per publisher and field, the values that it can send.
+"""What a callback publishes: the values of a field that is no text.
 
 Least and greatest values are found by asking for something beyond those that are known, so few questions are needed
 where a value is clamped. A set of few values is listed.
@@ -10,31 +10,19 @@ import math
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
 import z3
 
 from .ir.ranges import Ranges, narrow_floats
 from .ir.solving import SolverTimeout, Solving
 from .ir.terms import make_float, pack_float, read_float_bits, read_signed, unpack_float
-from .outcomes import CallbackPath, CodeLine, Exploration, InputKind
+from .outcomes import CallbackPath, Exploration, InputKind, Sent
 from .projection import FieldValues, Number, make_solving, merge_spans
 
 _FLOATS = (InputKind.FLOAT32, InputKind.FLOAT64)
 _FEW = 8
 _STEPS = 12
-
-
-class SentProjection(NamedTuple):
-    """A field that is sent. publisher: its name; path: of the field; places: where it is published."""
-
-    publisher: str
-    path: str
-    kind: InputKind
-    bits: int
-    is_signed: bool
-    values: FieldValues
-    places: tuple[CodeLine, ...]
 
 
 @dataclass
@@ -46,32 +34,23 @@ class _Collected:
     is_signed: bool
     numbers: set[int] = field(default_factory=set)
     terms: list[tuple[CallbackPath, z3.BitVecRef]] = field(default_factory=list)
-    places: dict[CodeLine, None] = field(default_factory=dict)
 
 
-def list_sent_fields(exploration: Exploration, seconds: float = 10.0) -> list[SentProjection]:
-    """Fields that are published on some path, with the values that they can have. A path that is unknown counts as far
-    as it went; bytes of texts are left out."""
-    collected: dict[tuple[str, str], _Collected] = {}
-    for path in exploration.paths:
-        for sent in path.sent:
-            for name, value in sent.values.items():
-                kind, bits, is_signed = sent.kinds[name]
-                if kind is InputKind.CHARACTER:
-                    continue
-                each = collected.setdefault((sent.publisher, name), _Collected(kind, bits, is_signed))
-                each.places[sent.place] = None
-                if isinstance(value, int):
-                    each.numbers.add(value)
-                else:
-                    each.terms.append((path, value))
-    solving = make_solving(exploration, time.monotonic() + seconds)
-    return [
-        SentProjection(
-            publisher, name, each.kind, each.bits, each.is_signed, _find_values(each, solving), tuple(each.places)
-        )
-        for (publisher, name), each in collected.items()
-    ]  # fmt: skip
+def project_sent_number(
+    exploration: Exploration, rows: Sequence[tuple[CallbackPath, Sent]], name: str, seconds: float
+) -> FieldValues | None:
+    """The values of one field that is no text, over paths that send it; None where none says what it sends."""
+    known = [(path, sent) for path, sent in rows if name in sent.values]
+    if not known:
+        return None
+    collected = _Collected(*known[0][1].kinds[name])
+    for path, sent in known:
+        value = sent.values[name]
+        if isinstance(value, int):
+            collected.numbers.add(value)
+        else:
+            collected.terms.append((path, value))
+    return _find_values(collected, make_solving(exploration, time.monotonic() + seconds))
 
 
 def _find_values(collected: _Collected, solving: Solving) -> FieldValues:
