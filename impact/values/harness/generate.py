@@ -104,6 +104,14 @@ class HarnessWriter:
         elif get_tail(site.name) == "main" or "lambda" in site.name or self._has_main(site.source.path):
             yield self._run_main(callback)
 
+    def choose_source(self, callback: CppCallback) -> str:
+        """The file that the harness of a callback includes: the one that subscribes, or that of the callback where the
+        helper that subscribes is handed it."""
+        built, site = self._find_built(callback), self.reader.find_class(callback.site)
+        if callback.function is None or built is None or site is None or built.key == site.key:
+            return callback.path
+        return callback.function.source.path
+
     def _find_built(self, callback: CppCallback) -> Cls | None:
         """The class whose object subscribes: that of the site, or that of the callback where the site is in a helper
         that it is handed to."""

@@ -145,7 +145,9 @@ class HarnessSession:
         nodes: by id or its last part; topics: by name; callbacks: by name or its last parts; places: path
         and line of the calls that make them."""
         asked = [one for one in self.callbacks if is_asked(one, nodes, topics, callbacks, kinds, places)]
-        for number, (source, rows) in enumerate(group_pairs((one.path, one) for one in asked).items()):
+        for number, (source, rows) in enumerate(
+            group_pairs((self.writer.choose_source(one), one) for one in asked).items()
+        ):
             yield from self._prepare_source(f"unit{number}", source, rows)
 
     def _prepare_source(self, name: str, source: str, rows: list[CppCallback]) -> Iterator[PreparedCallback]:

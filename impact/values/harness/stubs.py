@@ -19,6 +19,9 @@ _HOOKS = frozenset(
 )  # fmt: skip
 
 
+_FACADES = frozenset(("ros", "rclcpp", "rclcpp_action", "rclcpp_lifecycle", "tf", "tf2", "tf2_ros", "nodelet"))
+
+
 class CompileError(NamedTuple):
     """An error of a compiler. text: without its place."""
 
@@ -230,10 +233,13 @@ class StubTable:
         owner = _strip_arguments(owner).replace("const ", "").strip(" &*").removeprefix("::")
         if not _NAME.fullmatch(name):
             return False
+        head = owner.partition("::")[0]
         if owner not in _HOOKS and not self._is_type(owner):
             owner = next((one for base in self._list_bases(owner) if (one := self._find_type(base))), "")
-            if not owner:
+            if not owner and head not in _FACADES:
                 return False
+            # Many classes of the facades are of what takes any use.
+            owner = owner or "ri::Anything"
         members = self._members.setdefault(owner, {})
         kind = {"template": "function", "variable": "member", "namespace": "type"}.get(kind, kind)
         if name in members and (members[name] in (kind, "number") or kind == "member"):
