@@ -40,6 +40,7 @@ from .interface_headers import TEXTS, collect_c_header_doubts, find_interface_fa
 
 
 @rule(
+    preview=True,
     group="removed-header",
     texts={
         **TEXTS,

@@ -42,6 +42,7 @@ _SYSTEM_BY_DEFAULT = (
 
 
 @rule(
+    preview=True,
     texts={
         "given": Text(
             "`{subject}` is given to a target but find_package(`{subject}`) is not called",

@@ -44,6 +44,7 @@ _LOST = "`{name}` is used without `<{subject}>`, "
 
 
 @rule(
+    preview=True,
     scope="target",
     texts={
         "dropped": Text(_LOST + "which {by} {version}[[ of {horizon}]] no longer includes", "#include <{subject}>"),
