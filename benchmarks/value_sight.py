@@ -94,6 +94,7 @@ def ask(options: argparse.Namespace, system: dict, records: list[dict]) -> list[
     said = []
     for record in records:
         rows = [one for one in answer.report.callbacks if one.callback == record["callback"]]
+        rows = [one for one in rows if one.path == record["path"]] or rows
         same = [one for one in rows if one.message_type == record["type"]] or rows
         said.append(describe(same[0]) if same else {"explored": False, "reason": "the tool has no such callback"})
     return said
