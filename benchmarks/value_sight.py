@@ -11,7 +11,7 @@ What the tool says is computed when it is scored, on a checkout of the commit, a
 A crash that the reader has not got is judged by hand afterwards: `true` in NAME.verdicts.jsonl (repo, path, line, kind)
 
 usage: value_sight.py draw --set NAME --clones FOLDER [--number 6] [--seed 20]
-       value_sight.py score --set NAME --clones FOLDER --work FOLDER [--replay] [--seconds 20]
+       value_sight.py score --set NAME --clones FOLDER --work FOLDER [--replay] [--seconds 20] [--resume]
 """
 
 from __future__ import annotations
@@ -62,15 +62,26 @@ def describe(answer: CallbackAnswer) -> dict:
     }  # fmt: skip
 
 
+def check_out(clone: mining.Clone, commit: str, folder: Path) -> None:
+    """Writes the files of a commit into a folder, but for those that the clone lacks (large ones) and links."""
+    listed = clone.read("ls-tree", "-r", "-z", commit).split("\0")
+    for entry in filter(None, listed):
+        head, _, path = entry.partition("\t")
+        mode, _, blob = head.split()
+        if mode not in ("100644", "100755"):
+            continue
+        read = subprocess.run(["git", "-C", clone.folder, "cat-file", "blob", blob], capture_output=True, check=False)
+        if read.returncode == 0:
+            (folder / path).parent.mkdir(parents=True, exist_ok=True)
+            (folder / path).write_bytes(read.stdout)
+
+
 def ask(options: argparse.Namespace, system: dict, records: list[dict]) -> list[dict]:
     """What the tool says of the callbacks of one system, in their order."""
     (clone,) = mining.find_clones(options.clones, [system["repo"]])
     folder = options.work / clone.name.replace("/", "+")
     if not folder.exists():
-        folder.mkdir(parents=True)
-        command = ["git", "-C", clone.folder, "archive", system["commit"]]
-        archive = subprocess.run(command, check=True, capture_output=True)
-        subprocess.run(["tar", "-x", "-C", folder], input=archive.stdout, check=True)
+        check_out(clone, system["commit"], folder)
     names = sorted({record["callback"] for record in records})
     bounds = Bounds(seconds=options.seconds)
     try:
@@ -83,6 +94,7 @@ def ask(options: argparse.Namespace, system: dict, records: list[dict]) -> list[
     said = []
     for record in records:
         rows = [one for one in answer.report.callbacks if one.callback == record["callback"]]
+        rows = [one for one in rows if one.path == record["path"]] or rows
         same = [one for one in rows if one.message_type == record["type"]] or rows
         said.append(describe(same[0]) if same else {"explored": False, "reason": "the tool has no such callback"})
     return said
@@ -91,10 +103,15 @@ def ask(options: argparse.Namespace, system: dict, records: list[dict]) -> list[
 def score(options: argparse.Namespace, systems: list[dict], records: list[dict]) -> None:
     """Prints how many callbacks are explored, and how often tool and reader say the same."""
     pairs: list[tuple[dict, dict]] = []
-    with (SETS / f"{options.set}.said.jsonl").open("w") as out:
+    kept = SETS / f"{options.set}.said.jsonl"
+    known = [json.loads(line) for line in kept.read_text().splitlines()] if options.resume else []
+    with kept.open("w") as out:
         for system in systems:
             own = [record for record in records if record["repo"] == system["repo"]]
-            for record, said in zip(own, ask(options, system, own) if own else [], strict=True):
+            answers = [one for one in known if one["repo"] == system["repo"]]
+            if len(answers) != len(own):
+                answers = ask(options, system, own)
+            for record, said in zip(own, answers, strict=True):
                 pairs.append((record, said))
                 where = {key: record[key] for key in ("repo", "path", "line", "callback")}
                 out.write(json.dumps({**where, **said}) + "\n")
@@ -131,6 +148,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=20)
     parser.add_argument("--seconds", type=float, default=20.0)
     parser.add_argument("--replay", action="store_true")
+    parser.add_argument("--resume", action="store_true", help="systems that have an answer already are not asked again")
     options = parser.parse_args()
     systems = [json.loads(line) for line in (SETS / f"{options.set}.systems.jsonl").read_text().splitlines()]
     if options.command == "draw":

@@ -87,7 +87,7 @@ def _is_only_here(graph: Graph, topic: str) -> bool:
 
 def _compare(answer: CallbackAnswer, topic: str, row: Sender) -> Iterator[Mismatch]:
     """What one publisher sends that one subscriber crashes on, or does not handle."""
-    fields = [one for one in answer.fields if not one.path.startswith("this.") and one.path in row.fields]
+    fields = [one for one in answer.fields if not one.path.startswith(("this.", "global.")) and one.path in row.fields]
     for example in answer.examples:
         if example.result is Reaction.CRASH and example.confirmed is not False and _may_be_sent(example, row):
             crashing = [(one, _find_met(row, one, one.sets.get(Reaction.CRASH))) for one in fields]
@@ -144,7 +144,9 @@ def _list_impossible(answer: CallbackAnswer, topic: str, rows: Sequence[Sender])
     """Values that a subscriber tells from all others and that nobody sends."""
     for sets in answer.fields:
         handled = sets.sets.get(Reaction.HANDLED)
-        if handled is None or handled.is_relational or sets.path.startswith("this.") or not answer.is_complete:
+        if handled is None or handled.is_relational or not answer.is_complete:
+            continue
+        if sets.path.startswith(("this.", "global.")):
             continue
         sent = [row.fields.get(sets.path) for row in rows]
         if any(one is None or not one.is_known for one in sent):

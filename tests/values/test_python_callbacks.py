@@ -78,13 +78,18 @@ class Driver(object):
 
 def explore(body, message, tmp_path, bounds=None):
     """The exploration of `callback`, and what replays say of one witness per kind of outcome."""
-    text = HEAD + textwrap.indent(textwrap.dedent(body), "    ")
+    return explore_text(
+        HEAD + textwrap.indent(textwrap.dedent(body), "    "), "Driver.callback", message, tmp_path, bounds
+    )
+
+
+def explore_text(text, name, message, tmp_path, bounds=None):
     (tmp_path / "driver.py").write_text(text)
     sections = {name: extract(found.encode(), "msg").sections[0] for name, found in MESSAGES.items()}
     messages = Messages(sections.get, 1)
     module = ModuleCode("driver", "driver.py", ast.parse(text))
     found = explore_callback(
-        CallbackCode(module, "Driver.callback", 0, message), messages, lambda name: None, bounds or Bounds(text=5)
+        CallbackCode(module, name, 0, message), messages, lambda name: None, bounds or Bounds(text=5)
     )
     kinds = {name: (one.kind, one.bits, one.is_signed) for name, one in found.inputs.items()}
     seen = {}
@@ -98,7 +103,7 @@ def explore(body, message, tmp_path, bounds=None):
         model = solver.model()
         values = {name: model.eval(one.term, True).as_long() for name, one in found.inputs.items()}
         witness = Witness(values, path.result, path.crash, path.place)
-        place = ReplayPlace(tmp_path, (tmp_path,), "driver", "Driver.callback", message, tmp_path / "driver.py")
+        place = ReplayPlace(tmp_path, (tmp_path,), "driver", name, message, tmp_path / "driver.py")
         replayed = replay_witness(place, witness, kinds, messages, tmp_path)
         seen[key] = is_confirmed(witness, replayed) or replayed
     return found, seen
@@ -251,6 +256,94 @@ def test_state_of_the_node_is_any_that_its_methods_leave(tmp_path):
     found, _ = explore(body, "std_msgs/Int32", tmp_path)
     assert Counter(path.result for path in found.paths) == {Reaction.HANDLED: 1, Reaction.IGNORED: 1}
     assert "this.enabled" in found.inputs
+
+
+PLAIN = """
+import rospy
+from std_msgs.msg import Int32
+
+last = Int32()
+level = 0
+lost = 0
+armed = False
+seen = []
+pub = None
+
+
+def arm(msg):
+    global armed
+    armed = msg.data > 0
+
+
+def main():
+    global pub, level
+    pub = rospy.Publisher("out", Int32, queue_size=1)
+    level = 1
+    print(last, level, seen)
+"""
+
+
+def test_a_name_of_the_module_that_others_read_is_an_effect_where_it_changes(tmp_path):
+    body = """
+    def callback(msg):
+        global last, level, lost
+        if msg.data == 8:
+            last = msg
+        elif msg.data == 4:
+            level = msg.data
+        elif msg.data == 2:
+            lost = msg.data
+        elif msg.data == 1:
+            seen.append(msg.data)
+    """
+    found, replays = explore_text(PLAIN + textwrap.dedent(body), "callback", "std_msgs/Int32", tmp_path)
+    effects = {effect.name for path in found.paths for effect in path.effects}
+    assert effects == {"last", "level", "seen"}
+    assert solve(found, Reaction.HANDLED, "msg.data") == {1, 4, 8}
+    assert set(replays.values()) == {True}
+
+
+def test_names_of_the_module_are_what_its_functions_leave(tmp_path):
+    body = """
+    def callback(msg):
+        if armed and pub is not None:
+            pub.publish(msg.data)
+    """
+    found, replays = explore_text(PLAIN + textwrap.dedent(body), "callback", "std_msgs/Int32", tmp_path)
+    assert "global.armed" in found.inputs
+    assert {path.result for path in found.paths} >= {Reaction.IGNORED}
+    assert any(path.result is not Reaction.IGNORED for path in found.paths)
+    assert replays[(Reaction.IGNORED, None)] is True
+
+
+def test_members_of_the_objects_that_a_node_keeps_are_effects(tmp_path):
+    body = """
+    class Projector(object):
+        def __init__(self):
+            self.model = None
+            self.note = 0
+
+        def set_model(self, number):
+            if number <= 0:
+                return
+            self.model = (number, number)
+
+        def project(self):
+            return self.model
+
+
+    class Viewer(object):
+        def __init__(self):
+            self.projector = Projector()
+
+        def callback(self, msg):
+            self.projector.set_model(msg.data)
+            self.projector.note = 1
+    """
+    text = PLAIN + textwrap.dedent(body)
+    found, _ = explore_text(text, "Viewer.callback", "std_msgs/Int32", tmp_path)
+    assert {effect.name for path in found.paths for effect in path.effects} == {"projector.model"}
+    assert Counter(path.result for path in found.paths) == {Reaction.HANDLED: 1, Reaction.IGNORED: 1}
 
 
 def test_what_a_foreign_object_does_is_unknown_and_never_ignored(tmp_path):

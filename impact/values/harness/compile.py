@@ -316,14 +316,15 @@ class Workshop:
         if made not in self._precompiled:
             header = self.folder / "facade.hpp"
             name = "rclcpp/rclcpp.hpp" if self.definitions.ros == 2 else "ros/ros.h"
-            write_file(header, f"#pragma once\n#include <{name}>\n".encode())
+            write_file(header, f'#pragma once\n#include "ri_core.hpp"\n#include <{name}>\n'.encode())
             plain = SourceUnit("facade", "", standard=unit.standard, stubs=unit.stubs)
             self._find_headers(plain, clang, header)
             flags = self._list_flags(plain)
             at = flags.index("-include")
             del flags[at : at + 2]
             flags[flags.index("c++")] = "c++-header"
-            command = [clang, *flags, *_IR_FLAGS, str(header), "-o", str(made)]
+            # Headers that stand for Boost's come and go with the units; what counts is that they are of the same text.
+            command = [clang, *flags, *_IR_FLAGS, "-Xclang", "-fno-pch-timestamp", str(header), "-o", str(made)]
             command = [each for each in command if each not in ("-S", "-emit-llvm")]
             self._precompiled[made] = run_compiler(command, self.folder).status == 0
         return made if self._precompiled[made] else None

@@ -91,6 +91,7 @@ def _take_way(
         node: PythonObject | None = None
         if owner is not None:
             node = _make_node(machine, owner, function.name)
+        _free_globals(machine, function.scope.module)
         _forget_preparation(run)
         watch.start(node, function)
         given: list[Any] = [] if node is None else [node]
@@ -230,6 +231,28 @@ def _make_node(machine: PythonMachine, cls: PythonClass, callback: str) -> Pytho
     return node
 
 
+def _free_globals(machine: PythonMachine, module: ModuleCode) -> None:
+    """Makes the names of a module symbolic that its functions set: other callbacks may have been called before."""
+    for name in sorted(_list_set_globals(module.tree)):
+        value = module.names.get(name, machine)
+        if value is not machine and not isinstance(value, (PythonObject, PythonClass, PythonFunction)):
+            module.names[name] = _make_state(machine, f"global.{name}", value)
+
+
+def _list_set_globals(tree: ast.Module) -> set[str]:
+    """Names of a module that one of its functions sets after `global`."""
+    found: set[str] = set()
+    for function in ast.walk(tree):
+        if isinstance(function, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            given = {name for node in ast.walk(function) if isinstance(node, ast.Global) for name in node.names}
+            found |= {
+                node.id
+                for node in ast.walk(function)
+                if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) and node.id in given
+            }
+    return found
+
+
 def _make_state(machine: PythonMachine, path: str, value: Any) -> Any:
     """What a member may hold when a message comes: anything of its kind. What began as None may still be that."""
     if value is None:
@@ -313,43 +336,81 @@ def _list_called_by(cls: PythonClass, name: str) -> set[str]:
         found |= more
 
 
+@dataclass(slots=True)
+class _Watched:
+    """What is watched of one holder of names: the node, the module, an object that one of both keeps. start: what the
+    names of its effects begin with. held: the dictionary itself; before: as it was; sizes: by _measure."""
+
+    start: str
+    held: dict[str, Any]
+    names: set[str]
+    before: dict[str, Any]
+    sizes: dict[str, int]
+
+
 class _Watch:
-    """Which members of a node the callback leaves changed, of those that something else reads."""
+    """What the callback leaves changed, of what something else reads: members of its node, names of its module, members
+    of the objects that these keep."""
 
     def __init__(self, machine: PythonMachine):
         self._machine = machine
-        self._node: PythonObject | None = None
-        self._before: dict[str, Any] = {}
-        self._sizes: dict[str, int] = {}
-        self._names: set[str] = set()
+        self._watched: list[_Watched] = []
 
     def start(self, node: PythonObject | None, function: PythonFunction) -> None:
-        """Remembers the members as they are."""
-        if node is None:
-            return
-        habits = describe_class(node.cls)
-        own = function.name
-        self._node = node
-        self._names = {
-            name for name in {*habits.written, *node.members} if habits.read.get(name, set()) - {own, "__init__"}
-        } | {name for name, by in habits.read.items() if own in by and name in habits.written}
-        self._before = dict(node.members)
-        self._sizes = {name: _measure(value) for name, value in node.members.items()}
+        """Remembers everything as it is."""
+        module = function.scope.module
+        kept: list[tuple[str, Any]] = []
+        if node is not None:
+            habits = describe_class(node.cls)
+            own = function.name
+            names = {
+                name for name in {*habits.written, *node.members} if habits.read.get(name, set()) - {own, "__init__"}
+            } | {name for name, by in habits.read.items() if own in by and name in habits.written}
+            self._add("", node.members, names)
+            kept += node.members.items()
+        inside = set(ast.walk(function.node))
+        read = {
+            one.id for one in ast.walk(module.tree)
+            if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Load) and one not in inside
+        }  # fmt: skip
+        set_here = _list_set_globals(module.tree)
+        self._add("", module.names, {
+            name for name, value in module.names.items()
+            if name in read and (name in set_here or isinstance(value, (ListValue, dict, Record)))
+        })  # fmt: skip
+        kept += [(name, value) for name, value in module.names.items() if name in read]
+        self._add_objects(kept, module, {id(node)})
+
+    def _add(self, start: str, held: dict[str, Any], names: set[str]) -> None:
+        sizes = {name: _measure(value) for name, value in held.items() if name in names}
+        self._watched.append(_Watched(start, held, names, {name: held.get(name) for name in names}, sizes))
+
+    def _add_objects(self, kept: list[tuple[str, Any]], module: ModuleCode, seen: set[int]) -> None:
+        """Objects of classes of the workspace that are reached by members: their members that are read somewhere in the
+        module of their class or of the callback."""
+        while kept:
+            path, value = kept.pop()
+            if not isinstance(value, PythonObject) or id(value) in seen:
+                continue
+            seen.add(id(value))
+            written = describe_class(value.cls).written
+            read = _list_read_attributes(module.tree) | _list_read_attributes(value.cls.module.tree)
+            self._add(f"{path}.", value.members, {name for name in {*written, *value.members} if name in read})
+            kept.extend((f"{path}.{name}", one) for name, one in value.members.items())
 
     def finish(self) -> None:
-        """Notes a changed member as an effect; one that may be as it was is decided on."""
-        if self._node is None:
-            return
-        for name in sorted(self._names):
-            before, after = self._before.get(name), self._node.members.get(name)
-            if isinstance(before, Unsettled) and (
-                after is None or (isinstance(after, Opaque) and after.name == before.path)
-            ):
-                continue
-            if after is before and _measure(after) == self._sizes.get(name, 0):
-                continue
-            if self._differs(before, after):
-                self._machine.run.note_effect("member", name)
+        """Notes what has changed as an effect; what may be as it was is decided on."""
+        for one in self._watched:
+            for name in sorted(one.names):
+                before, after = one.before.get(name), one.held.get(name)
+                if isinstance(before, Unsettled) and (
+                    after is None or (isinstance(after, Opaque) and after.name == before.path)
+                ):
+                    continue
+                if after is before and _measure(after) == one.sizes.get(name, 0):
+                    continue
+                if self._differs(before, after):
+                    self._machine.run.note_effect("member", f"{one.start}{name}")
 
     def _differs(self, before: Any, after: Any) -> bool:
         if is_number(before) and is_number(after):
@@ -357,6 +418,10 @@ class _Watch:
         if isinstance(before, (str, SymbolicText)) and isinstance(after, (str, SymbolicText)):
             return not self._machine.is_true(self._machine.compare(ast.Eq, before, after))
         return True
+
+
+def _list_read_attributes(tree: ast.Module) -> set[str]:
+    return {one.attr for one in ast.walk(tree) if isinstance(one, ast.Attribute) and isinstance(one.ctx, ast.Load)}
 
 
 def _measure(value: Any) -> int:

@@ -48,7 +48,8 @@ def replay_witness(
         "function": place.function, "others": place.others,
         "has_message": bool(place.message),
         "message": _build_message(messages, place.message, "msg", witness.values, 0),
-        "members": _list_members(witness.values, kinds),
+        "members": _list_members("this.", witness.values, kinds),
+        "globals": _list_members("global.", witness.values, kinds),
         "answers": _list_answers(witness.values, kinds),
         "definitions": _describe_types(messages, place.message),
     }  # fmt: skip
@@ -135,9 +136,9 @@ def _build_text(path: str, values: dict[str, int]) -> dict[str, str]:
     return {"text": bytes(values.get(f"{path}[{at}]", 0) & 0xFF for at in range(size)).hex()}
 
 
-def _list_members(values: dict[str, int], kinds: Mapping[str, Kind]) -> dict[str, Any]:
-    """Members of the node, by their inputs `this.name`."""
-    return {path[len("this.") :]: value for path, value in _list_scalars("this.", values, kinds)}
+def _list_members(start: str, values: dict[str, int], kinds: Mapping[str, Kind]) -> dict[str, Any]:
+    """Members of the node by their inputs `this.name`, or names of the module by theirs, `global.name`."""
+    return {path[len(start) :]: value for path, value in _list_scalars(start, values, kinds)}
 
 
 def _list_answers(values: dict[str, int], kinds: Mapping[str, Kind]) -> dict[str, Any]:

@@ -420,23 +420,31 @@ def main():
         function = getattr(node, parts[-1])
     else:
         function = getattr(owner, parts[-1])
+    for name, value in TASK["globals"].items():
+        setattr(module, name, decode(value))
     if TASK["has_message"]:
         given.append(decode(TASK["message"]))
     given.extend(_Stub(f"argument {index}") for index in range(TASK["others"]))
     EVENTS.clear()
-    before = dict(vars(OWNER[0])) if OWNER else {}
-    sizes = {name: repr(value) for name, value in before.items() if isinstance(value, (list, dict, set))}
+    held = [vars(one) for one in (*OWNER[:1], module)]
+    before = [dict(one) for one in held]
+    sizes = [{name: repr(value) for name, value in one.items() if is_plain(name, value)} for one in before]
     try:
         function(*given)
     except BaseException as error:
         result.update(end="raised", exception=type(error).__name__, detail=str(error)[:300], line=find_line(error))
-    for name, value in (vars(OWNER[0]) if OWNER else {}).items():
-        old = before.get(name)
-        changed = repr(value) != sizes[name] if name in sizes else value is not old and not is_same(value, old)
-        if changed:
-            note("member", name)
+    for names, olds, texts in zip(held, before, sizes, strict=True):
+        for name, value in list(names.items()):
+            old = olds.get(name)
+            changed = repr(value) != texts[name] if name in texts else value is not old and not is_same(value, old)
+            if changed:
+                note("member", name)
     result["events"] = EVENTS
     real.write(json.dumps(result))
+
+
+def is_plain(name, value):
+    return isinstance(value, (list, dict, set)) and not name.startswith("__")
 
 
 def is_same(one, other):

@@ -1,6 +1,15 @@
 // What facades, messages and harnesses share: inputs and sent values by type, callbacks that were given to the
 // framework, and what stands for anything that is not known.
 #pragma once
+#include <iosfwd>
+#ifdef RI_SYMBOLIC
+// Stays a call, which the executor knows: inlined, these ask a stream of the library for what nobody has written there.
+namespace std {
+template <class C, class T> __attribute__((noinline)) basic_ostream<C, T> &endl(basic_ostream<C, T> &);
+template <class C, class T> __attribute__((noinline)) basic_ostream<C, T> &ends(basic_ostream<C, T> &);
+template <class C, class T> __attribute__((noinline)) basic_ostream<C, T> &flush(basic_ostream<C, T> &);
+}  // namespace std
+#endif
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,6 +26,7 @@
 #include <functional>
 #include <iomanip>
 #include <iostream>
+#include <iterator>
 #include <limits>
 #include <list>
 #include <map>
