@@ -101,20 +101,26 @@ class Planner:
 
     def plan(self, wanted: Collection[str] = ()) -> PrunePlan:
         """The plan for some topics, all where none is named."""
-        made: list[_Made] = []
+        able: list[tuple[str, tuple[Sequence[TopicFields], _Made]]] = []
         refusals: list[Refusal] = []
         for group in self._list_groups():
             names = [topic.topic for topic in group]
             if wanted and not any(name in wanted for name in names):
                 continue
-            reason = self._find_obstacle(group)
-            if not reason:
-                try:
-                    made.append(self._make(group))
-                    continue
-                except (EditRefused, LightenError) as error:
-                    reason = str(error)
-            refusals += [Refusal(topic.topic, topic.type, reason) for topic in group]
+            one = self._find_obstacle(group) or self._try(group)
+            if isinstance(one, str):
+                refusals += _refuse(group, one)
+            else:
+                able.append((one.plan.light, (group, one)))
+        made: list[_Made] = []
+        for sharing in group_pairs(able).values():
+            # Made at once, so that a file which uses the message for several topics defines its functions once.
+            groups = [group for group, _ in sharing]
+            together = self._try([topic for group in groups for topic in group]) if len(groups) > 1 else sharing[0][1]
+            if isinstance(together, str):
+                refusals += (row for group in groups[1:] for row in _refuse(group, together))
+                together = sharing[0][1]
+            made.append(together)
         originals: dict[str, bytes | None] = {}
 
         def read(path: str) -> bytes | None:
@@ -138,6 +144,13 @@ class Planner:
             applied = apply(kept, read)
         created.update(self._write_new_package(one for one in made if one.plan in plans))
         return PrunePlan(tuple(plans), tuple(refusals), applied.files, created)
+
+    def _try(self, group: Sequence[TopicFields]) -> _Made | str:
+        """The lighter message of a group, or why it cannot be made."""
+        try:
+            return self._make(group)
+        except (EditRefused, LightenError) as error:
+            return str(error)
 
     # Topics that go together
 
@@ -257,7 +270,9 @@ class Planner:
             base = f"{name}Light" if topic in ("", name) else f"{name}{topic}Light"
             home = self.workspace.packages.get(package)
             own = {one.name: self.read(one.path) or b"" for one in home.linked.interfaces} if home is not None else {}
-            taken = {other.lower() for other in (*own, *self._named)}
+            # A script may import messages of several packages by their names.
+            every = (one.name for each in self.workspace for one in each.linked.interfaces)
+            taken = {other.lower() for other in (*every, *self._named)}
             chosen, number = base, 2
             while chosen.lower() in taken:
                 chosen, number = f"{base}{number}", number + 1
@@ -365,6 +380,10 @@ class Planner:
             return compute_size(build_layout(find_section, type_, encoding), {}, encoding, self.length)
         except LayoutError:
             return 0
+
+
+def _refuse(group: Iterable[TopicFields], reason: str) -> list[Refusal]:
+    return [Refusal(topic.topic, topic.type, reason) for topic in group]
 
 
 def _split(leaf: str) -> Path:

@@ -374,6 +374,56 @@ def test_topics_with_equal_needs_share_a_message(tmp_path):
     assert plans["/report"] != plans["/archive"]
 
 
+TWO_TALK = """#include <ros/ros.h>
+#include <msgs/State.h>
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "talk");
+  ros::NodeHandle nh;
+  ros::Publisher one = nh.advertise<msgs::State>("one", 1);
+  ros::Publisher two = nh.advertise<msgs::State>("two", 1);
+  msgs::StatePtr state(new msgs::State);
+  one.publish(*state);
+  two.publish(state);
+}
+"""
+TWO_HEAR = """#include <ros/ros.h>
+#include <msgs/State.h>
+
+int help(const msgs::State& s) { return s.level; }
+void onOne(const msgs::State& state) { help(state); }
+void onTwo(const msgs::State& state) { help(state); }
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "hear");
+  ros::NodeHandle nh;
+  ros::Subscriber one = nh.subscribe("one", 1, onOne);
+  ros::Subscriber two = nh.subscribe("two", 1, onTwo);
+  ros::spin();
+}
+"""
+
+
+def test_a_file_that_uses_a_shared_message_for_two_topics_defines_its_functions_once(tmp_path):
+    files = {**ROS1, "nodes/src/talk.cpp": TWO_TALK, "nodes/src/hear.cpp": TWO_HEAR}
+    prepared = prepare(write(tmp_path, files))
+    (plan,) = prepared.plan.plans
+    assert (plan.topics, plan.light, plan.keep) == (("/one", "/two"), "msgs/StateOneLight", ("level",))
+    talk, hear = (prepared.plan.changed[f"nodes/src/{name}.cpp"].decode() for name in ("talk", "hear"))
+    assert talk.count("inline msgs::StateOneLight fill_state_one_light(") == 1
+    assert talk.count("inline auto fill_state_one_light(") == 1
+    assert hear.count("inline msgs::State widen_state_one_light(") == 1
+    assert {"one.publish(fill_state_one_light(*state));", "two.publish(fill_state_one_light(state));"} <= added(prepared)
+
+
+def test_a_lighter_message_is_not_called_like_one_of_another_package(tmp_path):
+    files = {"more/package.xml": ROS1["msgs/package.xml"].replace("msgs", "more"), "more/msg/statelight.msg": "int8 x\n",
+             "more/CMakeLists.txt": "project(more)\nfind_package(catkin REQUIRED COMPONENTS message_generation)\n"
+                                    "add_message_files(FILES statelight.msg)\n"}  # fmt: skip
+    prepared = plan_ros1(tmp_path, "use(state->level);", **files)
+    assert [plan.light for plan in prepared.plan.plans] == ["msgs/StateLight2"]
+
+
 def read_all(root: Path) -> dict[str, bytes]:
     return {one.relative_to(root).as_posix(): one.read_bytes() for one in root.rglob("*") if one.is_file()}
 
