@@ -413,13 +413,17 @@ def test_a_file_that_uses_a_shared_message_for_two_topics_defines_its_functions_
     assert talk.count("inline msgs::StateOneLight fill_state_one_light(") == 1
     assert talk.count("inline auto fill_state_one_light(") == 1
     assert hear.count("inline msgs::State widen_state_one_light(") == 1
-    assert {"one.publish(fill_state_one_light(*state));", "two.publish(fill_state_one_light(state));"} <= added(prepared)
+    assert "one.publish(fill_state_one_light(*state));" in talk
+    assert "two.publish(fill_state_one_light(state));" in talk
 
 
 def test_a_lighter_message_is_not_called_like_one_of_another_package(tmp_path):
-    files = {"more/package.xml": ROS1["msgs/package.xml"].replace("msgs", "more"), "more/msg/statelight.msg": "int8 x\n",
-             "more/CMakeLists.txt": "project(more)\nfind_package(catkin REQUIRED COMPONENTS message_generation)\n"
-                                    "add_message_files(FILES statelight.msg)\n"}  # fmt: skip
+    files = {
+        "more/package.xml": ROS1["msgs/package.xml"].replace("msgs", "more"),
+        "more/CMakeLists.txt": ROS1["msgs/CMakeLists.txt"].replace("msgs", "more").replace("State.", "statelight."),
+        "more/msg/statelight.msg": "int8 x\n",
+        "more/msg/Point.msg": "float64 x\n",
+    }
     prepared = plan_ros1(tmp_path, "use(state->level);", **files)
     assert [plan.light for plan in prepared.plan.plans] == ["msgs/StateLight2"]
 
