@@ -10,6 +10,7 @@ from typing import NamedTuple
 from ...edges.groups import group_pairs
 from ..analysis.fields import read_section
 from ..analysis.fix import apply, declare_dependency
+from ..facts.flow import DataMember
 from ..facts.interface import PRIMITIVES, TIMES, extract, make_full_name
 from ..model.fields.reading import Reading, select_parameters
 from ..model.fields.report import FieldReport, TopicFields
@@ -187,6 +188,11 @@ class Planner:
                 continue
             at.setdefault(f"the {endpoint.role} at {endpoint.path}:{endpoint.line}", []).append(key)
             at.setdefault(f"the name {endpoint.topic}", []).append(key)
+            for site in self.topics.sites.get((endpoint.path, endpoint.line), ()):
+                for path, member in self.list_members(site.variable) if site.role == endpoint.role else ():
+                    # A declaration that names the message is of one type for all that it declares.
+                    if "<" in member.type:
+                        at.setdefault(f"`{member.type}` at {path}:{member.line}", []).append(key)
             if endpoint.role == "subscriber":
                 for fn in self.topics.list_callbacks(endpoint):
                     at.setdefault(f"the callback at {fn.source.path}:{fn.facts.line}", []).append(key)
@@ -195,6 +201,12 @@ class Planner:
                 place = f"the statement at {publish.path}:{publish.line}"
                 at.setdefault(place, []).append((publish.topic, publish.type))
         return at.items()
+
+    def list_members(self, variable: Variable | None) -> Iterator[tuple[str, DataMember]]:
+        """The declarations of a member, each with the path of its file."""
+        if variable is not None and variable.kind == "member":
+            for cls in self.code.list_class_bodies(variable.owner):
+                yield from ((cls.source.path, one) for one in cls.facts.members if one.name == variable.name)
 
     def _find_obstacle(self, group: Sequence[TopicFields]) -> str:
         """Why the topics of a group keep their message, empty where nothing is seen yet."""
@@ -410,6 +422,8 @@ class _Work:
         # callbacks are given the full message.
         self.pointers: dict[str, bool] = {}
         self.widened: list[str] = []
+        # The names of publishers and subscriptions whose types change.
+        self.variables = set[str]()
         self.partial = {path for path in _list_partial(fields, ())}
         stem = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", light.partition("/")[2]).lower()
         own = ", ".join(sorted(self.names))
@@ -419,6 +433,7 @@ class _Work:
     def collect(self) -> list[Edit]:
         """All edits. Raises EditRefused."""
         sites = self._list_sites()
+        self.variables = {site.variable.name for site in sites if site.variable is not None}
         for site in sites:
             self._retype_site(site)
         done: set[Fn] = set()
@@ -542,19 +557,18 @@ class _Work:
     def _retype_variable(self, variable: Variable, fn: Fn) -> None:
         """Changes the type that a publisher or subscription is declared with, where it names the message."""
         if variable.kind == "member":
-            for cls in self.code.list_class_bodies(variable.owner):
-                for member in cls.facts.members:
-                    if member.name == variable.name:
-                        self._get_cpp(cls.source.path).retype_member(
-                            member.line, member.name, self.type, self.light
-                        )
+            for path, member in self.planner.list_members(variable):
+                self._retype_declared(path, member.line, member.name)
         elif variable.kind == "local":
             for each in fn.assigned.get(variable.name, ()):
                 if each.type and "<" in each.type:
-                    self._get_cpp(fn.source.path).retype_member(each.line, variable.name, self.type, self.light)
+                    self._retype_declared(fn.source.path, each.line, variable.name)
         else:
             for constant, source in self.code.list_constants(variable, fn):
-                self._get_cpp(source.path).retype_member(constant.line, constant.name, self.type, self.light)
+                self._retype_declared(source.path, constant.line, constant.name)
+
+    def _retype_declared(self, path: str, line: int, name: str) -> None:
+        self._get_cpp(path).retype_member(line, name, self.type, self.light, self.variables)
 
     # Callbacks
 

@@ -265,6 +265,25 @@ def test_a_publisher_whose_type_has_another_name(tmp_path):
     assert refusal.reason == "`pub_` at nodes/src/talk.cpp:14 is of type `Out`"
 
 
+@pytest.mark.parametrize("both", [False, True])
+def test_publishers_that_are_declared_together(both, tmp_path):
+    talk = ROS2_TALK.replace("SharedPtr pub_;", "SharedPtr pub_, more_;").replace(
+        'Node("talk") {', 'Node("talk") { \nmore_ = create_publisher<msgs::msg::State>("more", 10);\n')  # fmt: skip
+    hear = ROS2_HEAR.replace('      "state", 10, [this]', '      "more", 10, [this]')
+    files = {**ROS2, "nodes/src/talk.cpp": talk, "nodes/src/hear.cpp": hear if both else ROS2_HEAR}
+    found = prepare(write(tmp_path, files)).plan
+    assert [plan.topics for plan in found.plans] == ([("/more", "/state")] if both else [])
+    reasons = {one.topic: one.reason for one in found.refusals}
+    assert list(reasons) == ([] if both else ["/more", "/state"])
+    assert both or "nobody else reads /more" in reasons["/state"]
+
+
+def test_a_publisher_that_is_declared_with_something_else(tmp_path):
+    talk = ROS2_TALK.replace("SharedPtr pub_;", "SharedPtr pub_, last_;")
+    (refusal,) = prepare(write(tmp_path, {**ROS2, "nodes/src/talk.cpp": talk})).plan.refusals
+    assert refusal.reason == "`pub_` at nodes/src/talk.cpp:13 is declared with `last_`, which keeps its type"
+
+
 def test_ros2(tmp_path):
     prepared = prepare(write(tmp_path, ROS2))
     (plan,) = prepared.plan.plans
