@@ -238,6 +238,15 @@ class Planner:
                         found.update(sorted(below, key=lambda leaf: ("[]" in leaf, below.index(leaf)))[:1])
         return found
 
+    def _check_types(self, group: Sequence[TopicFields], partial: Collection[Path]) -> None:
+        """Raises EditRefused where code asks for the class of what gets another one. partial: fields that get one."""
+        for topic in group:
+            for endpoint in self.list_endpoints(topic, "subscriber"):
+                typed = self.topics.read(self.topics.list_callbacks(endpoint), endpoint, topic.type).typed
+                for path, place in typed.items():
+                    if not path or path in partial:
+                        raise EditRefused(f"{place.path}:{place.line} asks for the class of the message")
+
     def list_endpoints(self, topic: TopicFields, role: str) -> Iterator[Endpoint]:
         """The endpoints of a topic, publishers or subscribers."""
         for one in self.topics.graph.endpoints:
@@ -267,6 +276,7 @@ class Planner:
         texts = {f"{package}/{name}": one.text for name, one in made.items()}
         fields = name_nested(fields, light, texts.get)
         work = _Work(self, group, type_, light, fields)
+        self._check_types(group, work.partial)
         edits = work.collect()
         created = self._put_definitions(type_, made, edits)
         files = tuple(sorted({edit.path for edit in edits} | created.keys()))

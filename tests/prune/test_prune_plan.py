@@ -377,6 +377,31 @@ def test_python(tmp_path):
             compile(data, path, "exec")
 
 
+# What a callback in Python asks for beside the level, and what is kept, or the reason why nothing is dropped.
+ASKED = {
+    "the class": ("isinstance(state, State)", "nodes/scripts/hear.py:6 asks for the class of the message"),
+    "the type": ("type(state) is State", "nodes/scripts/hear.py:6 asks for the class of the message"),
+    "the class of a part": ("state.at.x, isinstance(state.at, Point)",
+                            "nodes/scripts/hear.py:6 asks for the class of the message"),
+    "the class of a number": ("isinstance(state.level, int)", ("level",)),
+    "whether there is a field": ('hasattr(state, "text")', ("level", "text")),
+    "whether there is any field": ("hasattr(state, NAME)", "the whole message is handed on: given"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ASKED)
+def test_what_a_class_is_asked_for_stays(name, tmp_path):
+    code, expected = ASKED[name]
+    files = {name: text for name, text in ROS1.items() if name.startswith("msgs/") or name == "nodes/package.xml"}
+    hear = PYTHON["nodes/scripts/hear.py"].replace("import msgs.msg\n\n", "from msgs.msg import Point, State\n")
+    hear = hear.replace("msgs.msg.State", "State").replace("sum(p.y for p in state.points)", f"state.level, {code}")
+    plan = prepare(write(tmp_path, {**files, **PYTHON, "nodes/scripts/hear.py": hear})).plan
+    if isinstance(expected, tuple):
+        assert [one.keep for one in plan.plans] == [expected]
+    else:
+        assert plan.plans == () and plan.refusals[0].reason.startswith(expected)
+
+
 def test_topics_with_equal_needs_share_a_message(tmp_path):
     shutil.copytree(FLEET, tmp_path / "fleet")
     brain = tmp_path / "fleet/src/fleet_brain/src/brain.cpp"

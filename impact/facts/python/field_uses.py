@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import ast
 
-from ..field_uses import FieldFile, FieldFunction, PathUse
+from ..field_uses import TYPE_TESTS, FieldFile, FieldFunction, PathUse
 from ..place import Problem
 from .source import read
 from .text import SourceText
 
 _THROUGH = frozenset(("copy", "deepcopy", "copy.copy", "copy.deepcopy", "list", "tuple", "reversed", "iter", "sorted",
                       "next", "cast", "typing.cast", "set"))  # fmt: skip
-_TESTS = frozenset(("isinstance", "hasattr", "type", "id", "callable", "issubclass"))
+_TESTS = frozenset(("isinstance", "type", "id", "callable", "issubclass"))
 _ADDS = frozenset(("append", "appendleft", "add", "put", "insert", "put_nowait", "push", "extend"))
 _CHANGES = frozenset(("append", "extend", "insert", "clear", "reverse", "appendleft"))
 _TAKES = frozenset(("pop", "popleft", "get", "get_nowait", "setdefault"))
@@ -112,7 +112,7 @@ class _Reader(SourceText):
     def _add(
         self, path: str, how: str, node: ast.AST, to: str = "", place: int = 0, count: int = 0, type_: str = ""
     ) -> None:
-        if path == "this" or (how in ("test", "size") and "." not in path):
+        if path == "this" or (how in ("test", "size") and "." not in path and to not in TYPE_TESTS):
             return  # it reads nothing
         self.uses.append(PathUse(path, how, node.lineno, to[:_LONGEST], place, count, type_[:200]))  # type: ignore
 
@@ -205,6 +205,13 @@ class _Reader(SourceText):
         callee = _spell(call.func, self.own)
         if callee == "getattr" and len(call.args) > 1 and call.args[0] is at and isinstance(call.args[1], ast.Constant):
             return f"{path}.{call.args[1].value}", call
+        if callee == "hasattr" and len(call.args) == 2 and call.args[0] is at:
+            named = call.args[1]
+            if isinstance(named, ast.Constant):
+                self._add(f"{path}.{named.value}", "test", node, callee)
+            else:
+                self._add(path, "use", node, "given")
+            return None
         if callee == "sorted" and call.keywords and not self._pass_to_key(path, call, node):
             self._add(path, "use", node, "sorted by a key")
             return None
