@@ -108,7 +108,7 @@ class Planner:
             names = [topic.topic for topic in group]
             if wanted and not any(name in wanted for name in names):
                 continue
-            one = self._find_obstacle(group) or self._try(group)
+            one = self._find_obstacle(group) or self._make_or_explain(group)
             if isinstance(one, str):
                 refusals += _refuse(group, one)
             else:
@@ -117,11 +117,14 @@ class Planner:
         for sharing in group_pairs(able).values():
             # Made at once, so that a file which uses the message for several topics defines its functions once.
             groups = [group for group, _ in sharing]
-            together = self._try([topic for group in groups for topic in group]) if len(groups) > 1 else sharing[0][1]
-            if isinstance(together, str):
-                refusals += (row for group in groups[1:] for row in _refuse(group, together))
-                together = sharing[0][1]
-            made.append(together)
+            one = sharing[0][1]
+            if len(groups) > 1:
+                together = self._make_or_explain([topic for group in groups for topic in group])
+                if isinstance(together, str):
+                    refusals += (row for group in groups[1:] for row in _refuse(group, together))
+                else:
+                    one = together
+            made.append(one)
         originals: dict[str, bytes | None] = {}
 
         def read(path: str) -> bytes | None:
@@ -146,7 +149,7 @@ class Planner:
         created.update(self._write_new_package(one for one in made if one.plan in plans))
         return PrunePlan(tuple(plans), tuple(refusals), applied.files, created)
 
-    def _try(self, group: Sequence[TopicFields]) -> _Made | str:
+    def _make_or_explain(self, group: Sequence[TopicFields]) -> _Made | str:
         """The lighter message of a group, or why it cannot be made."""
         try:
             return self._make(group)
