@@ -422,10 +422,11 @@ def prune(
         default=False,
     ),
     bag: Path | None = _make_option(
-        "With --measure: send the messages of this bag; without one they are filled as the publishers fill them."
+        "Say what the plan saves in a second in this bag. With --measure: send its messages; without one they are "
+        "filled as the publishers fill them."
     ),
     rate: float | None = _make_option(
-        "With --measure: messages per second; default: as in the bag, else 50.", min=0.001
+        "Messages per second, for what the plan saves. Default: as in the bag; with --measure, else 50.", min=0.001
     ),
     repeat: int | None = _make_option("With --measure: repetitions; intervals are over them [default: 3].", min=1),
     nodes: str = _make_option(

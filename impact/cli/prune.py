@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...edges.console import UserError, format_count, say
+from ...edges.console import UserError, format_count, make_step_reporter, say
 from ...edges.version import __version__
 from .output import find_style, make_command, make_progress_bar, say_notes, validate_choice
 
 if TYPE_CHECKING:
     from ..measure.gains import TopicGain
+    from ..prune.savings import TopicSaving
     from ..prune.session import Prepared
 
 
@@ -30,9 +32,12 @@ def prune(
         raise UserError("--verify: tells in text what it compared; leave out --undo and --format")
     measuring = {"bag": bag, "rate": rate, "repeat": repeat, "nodes": nodes, "link": link, "loopback": loopback,
                  "results": results}  # fmt: skip
-    if not measure and any(measuring.values()):
-        names = ", ".join(f"--{name}" for name, value in measuring.items() if value)
-        raise UserError(f"{names}: for --measure; add it")
+    beside = [f"--{name}" for name, value in measuring.items() if value]
+    alone = [name for name in beside if name not in ("--bag", "--rate")]
+    if not measure and alone:
+        raise UserError(f"{', '.join(alone)}: for --measure; add it")
+    if beside and not measure and (verify or undo or format == "patch"):
+        raise UserError(f"{', '.join(beside)}: stands beside the plan; leave out --verify, --undo and --format patch")
     if measure and (verify or undo or format == "patch"):
         raise UserError("--measure: stands beside the plan; leave out --verify, --undo and --format patch")
     from ..prune import session
@@ -56,6 +61,7 @@ def prune(
             return render_verification(done, find_style(output)), 1
         text = render_verification(done, find_style(output))
     gains = _measure(path, prepared, seconds, length, quiet, **measuring) if measure else []
+    savings = _find_savings(path, prepared, bag, rate, quiet) if beside and not measure else []
     if prepared.plan.plans and apply:
         session.apply_plan(path, prepared)
         say_notes([f"written to {path}; `rosimpact prune --undo {path}` takes it back"])
@@ -67,8 +73,24 @@ def prune(
     if format == "patch":
         return session.make_diff(prepared)
     if format == "json":
-        return render_plan_json(prepared.plan, __version__, gains)
-    return render_plan_text(prepared.plan, session.make_diff(prepared), all, find_style(output), gains)
+        return render_plan_json(prepared.plan, __version__, gains, savings)
+    return render_plan_text(prepared.plan, session.make_diff(prepared), all, find_style(output), gains, savings)
+
+
+def _find_savings(
+    path: Path, prepared: Prepared, bag: Path | None, rate: float | None, quiet: bool
+) -> list[TopicSaving]:  # fmt: skip
+    """What the plan saves in a second, at the rate that was given, or as the bag has it."""
+    from ..analysis.bags import measure_bag
+    from ..analysis.message_files import MessageFolders
+    from ..prune.savings import find_savings
+
+    facts = None
+    topics = [topic for one in prepared.plan.plans for topic in one.topics]
+    if bag is not None and topics:
+        progress = None if quiet else make_step_reporter()
+        facts = measure_bag(bag, topics, find_text=MessageFolders((path,), os.environ).find, progress=progress)
+    return find_savings(prepared.plan, rate, facts)
 
 
 def _measure(

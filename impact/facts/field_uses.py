@@ -11,6 +11,9 @@ import msgspec
 
 from .place import Problem
 
+TYPE_TESTS = frozenset(("isinstance", "type"))
+"""Functions of Python that ask for the class of what they are given: tests, by `to`."""
+
 
 class PathUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What is done with a path. path: a name and its members, joined by `.`: `msg.pose.position.x`, `this.last_.level`;
@@ -19,7 +22,7 @@ class PathUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     | how | what is done | to | place, count | type |
     |---|---|---|---|---|
     | read | its value goes into an operator, a test or a log | which | | |
-    | test | only whether it is there is asked: a null pointer, the end of an iteration | | | |
+    | test | only whether it is there is asked: a null pointer, an end; or for its class | the function | | |
     | size | only how many elements it has is asked | | | |
     | write | it is assigned | the operator | | |
     | change | a method changes what it holds | the method | | |

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from codecs import BOM_UTF8
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from tree_sitter import Node
 
@@ -161,9 +161,9 @@ class CppEditor:
                 at = inner.end_byte
         return count + self.replace_type(at, call.end_byte, old, new)
 
-    def retype_member(self, line: int, name: str, old: str, new: str) -> None:
-        """Changes the type of a variable that is declared in a line, where that names the message. Raises EditRefused
-        for one of another type."""
+    def retype_member(self, line: int, name: str, old: str, new: str, own: Collection[str]) -> None:
+        """Changes the type of a variable that is declared in a line, where that names the message. own: all variables
+        whose type is changed. Raises EditRefused for one of another type, and beside one that keeps its type."""
         for node in self._walk(self._root, KIND.field_declaration, KIND.declaration):
             first, last = self._find_line(node), bisect_right(self._starts, node.end_byte)
             if first <= line <= last and re.search(rf"\b{re.escape(name)}\b", self._spell_node(node)):
@@ -173,6 +173,11 @@ class CppEditor:
                     return
                 if not self.replace_type(declared.start_byte, declared.end_byte, old, new):
                     raise EditRefused(f"`{name}` at {self.path}:{line} is of type `{text}`")
+                for declarator in node.children_by_field_name("declarator"):
+                    spelt = self._spell_node(declarator)
+                    if not any(re.search(rf"\b{re.escape(one)}\b", spelt) for one in own):
+                        where = f"{self.path}:{line}"
+                        raise EditRefused(f"`{name}` at {where} is declared with `{spelt}`, which keeps its type")
                 return
 
     def _find_parameter(self, listed: Node, place: int) -> Node:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from ...edges.groups import group_pairs
 from ..analysis.fields import read_section
 from ..analysis.fix import apply, declare_dependency
+from ..facts.flow import DataMember
 from ..facts.interface import PRIMITIVES, TIMES, extract, make_full_name
 from ..model.fields.reading import Reading, select_parameters
 from ..model.fields.report import FieldReport, TopicFields
@@ -101,20 +102,29 @@ class Planner:
 
     def plan(self, wanted: Collection[str] = ()) -> PrunePlan:
         """The plan for some topics, all where none is named."""
-        made: list[_Made] = []
+        able: list[tuple[str, tuple[Sequence[TopicFields], _Made]]] = []
         refusals: list[Refusal] = []
         for group in self._list_groups():
             names = [topic.topic for topic in group]
             if wanted and not any(name in wanted for name in names):
                 continue
-            reason = self._find_obstacle(group)
-            if not reason:
-                try:
-                    made.append(self._make(group))
-                    continue
-                except (EditRefused, LightenError) as error:
-                    reason = str(error)
-            refusals += [Refusal(topic.topic, topic.type, reason) for topic in group]
+            one = self._find_obstacle(group) or self._make_or_explain(group)
+            if isinstance(one, str):
+                refusals += _refuse(group, one)
+            else:
+                able.append((one.plan.light, (group, one)))
+        made: list[_Made] = []
+        for sharing in group_pairs(able).values():
+            # Made at once, so that a file which uses the message for several topics defines its functions once.
+            groups = [group for group, _ in sharing]
+            one = sharing[0][1]
+            if len(groups) > 1:
+                together = self._make_or_explain([topic for group in groups for topic in group])
+                if isinstance(together, str):
+                    refusals += (row for group in groups[1:] for row in _refuse(group, together))
+                else:
+                    one = together
+            made.append(one)
         originals: dict[str, bytes | None] = {}
 
         def read(path: str) -> bytes | None:
@@ -138,6 +148,13 @@ class Planner:
             applied = apply(kept, read)
         created.update(self._write_new_package(one for one in made if one.plan in plans))
         return PrunePlan(tuple(plans), tuple(refusals), applied.files, created)
+
+    def _make_or_explain(self, group: Sequence[TopicFields]) -> _Made | str:
+        """The lighter message of a group, or why it cannot be made."""
+        try:
+            return self._make(group)
+        except (EditRefused, LightenError) as error:
+            return str(error)
 
     # Topics that go together
 
@@ -174,6 +191,11 @@ class Planner:
                 continue
             at.setdefault(f"the {endpoint.role} at {endpoint.path}:{endpoint.line}", []).append(key)
             at.setdefault(f"the name {endpoint.topic}", []).append(key)
+            for site in self.topics.sites.get((endpoint.path, endpoint.line), ()):
+                for path, member in self.list_members(site.variable) if site.role == endpoint.role else ():
+                    # A declaration that names the message is of one type for all that it declares.
+                    if "<" in member.type:
+                        at.setdefault(f"`{member.type}` at {path}:{member.line}", []).append(key)
             if endpoint.role == "subscriber":
                 for fn in self.topics.list_callbacks(endpoint):
                     at.setdefault(f"the callback at {fn.source.path}:{fn.facts.line}", []).append(key)
@@ -182,6 +204,12 @@ class Planner:
                 place = f"the statement at {publish.path}:{publish.line}"
                 at.setdefault(place, []).append((publish.topic, publish.type))
         return at.items()
+
+    def list_members(self, variable: Variable | None) -> Iterator[tuple[str, DataMember]]:
+        """The declarations of a member, each with the path of its file."""
+        if variable is not None and variable.kind == "member":
+            for cls in self.code.list_class_bodies(variable.owner):
+                yield from ((cls.source.path, one) for one in cls.facts.members if one.name == variable.name)
 
     def _find_obstacle(self, group: Sequence[TopicFields]) -> str:
         """Why the topics of a group keep their message, empty where nothing is seen yet."""
@@ -213,6 +241,15 @@ class Planner:
                         found.update(sorted(below, key=lambda leaf: ("[]" in leaf, below.index(leaf)))[:1])
         return found
 
+    def _check_types(self, group: Sequence[TopicFields], partial: Collection[Path]) -> None:
+        """Raises EditRefused where code asks for the class of what gets another one. partial: fields that get one."""
+        for topic in group:
+            for endpoint in self.list_endpoints(topic, "subscriber"):
+                typed = self.topics.read(self.topics.list_callbacks(endpoint), endpoint, topic.type).typed
+                for path, place in typed.items():
+                    if not path or path in partial:
+                        raise EditRefused(f"{place.path}:{place.line} asks for the class of the message")
+
     def list_endpoints(self, topic: TopicFields, role: str) -> Iterator[Endpoint]:
         """The endpoints of a topic, publishers or subscribers."""
         for one in self.topics.graph.endpoints:
@@ -242,6 +279,7 @@ class Planner:
         texts = {f"{package}/{name}": one.text for name, one in made.items()}
         fields = name_nested(fields, light, texts.get)
         work = _Work(self, group, type_, light, fields)
+        self._check_types(group, work.partial)
         edits = work.collect()
         created = self._put_definitions(type_, made, edits)
         files = tuple(sorted({edit.path for edit in edits} | created.keys()))
@@ -257,7 +295,9 @@ class Planner:
             base = f"{name}Light" if topic in ("", name) else f"{name}{topic}Light"
             home = self.workspace.packages.get(package)
             own = {one.name: self.read(one.path) or b"" for one in home.linked.interfaces} if home is not None else {}
-            taken = {other.lower() for other in (*own, *self._named)}
+            # A script may import messages of several packages by their names.
+            every = (one.name for each in self.workspace for one in each.linked.interfaces)
+            taken = {other.lower() for other in (*every, *self._named)}
             chosen, number = base, 2
             while chosen.lower() in taken:
                 chosen, number = f"{base}{number}", number + 1
@@ -367,6 +407,10 @@ class Planner:
             return 0
 
 
+def _refuse(group: Iterable[TopicFields], reason: str) -> list[Refusal]:
+    return [Refusal(topic.topic, topic.type, reason) for topic in group]
+
+
 def _split(leaf: str) -> Path:
     return tuple(leaf.replace("[]", ".[]").split("."))
 
@@ -391,6 +435,8 @@ class _Work:
         # callbacks are given the full message.
         self.pointers: dict[str, bool] = {}
         self.widened: list[str] = []
+        # The names of publishers and subscriptions whose types change.
+        self.variables = set[str]()
         self.partial = {path for path in _list_partial(fields, ())}
         stem = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", light.partition("/")[2]).lower()
         own = ", ".join(sorted(self.names))
@@ -400,6 +446,7 @@ class _Work:
     def collect(self) -> list[Edit]:
         """All edits. Raises EditRefused."""
         sites = self._list_sites()
+        self.variables = {site.variable.name for site in sites if site.variable is not None}
         for site in sites:
             self._retype_site(site)
         done: set[Fn] = set()
@@ -523,19 +570,18 @@ class _Work:
     def _retype_variable(self, variable: Variable, fn: Fn) -> None:
         """Changes the type that a publisher or subscription is declared with, where it names the message."""
         if variable.kind == "member":
-            for cls in self.code.list_class_bodies(variable.owner):
-                for member in cls.facts.members:
-                    if member.name == variable.name:
-                        self._get_cpp(cls.source.path).retype_member(
-                            member.line, member.name, self.type, self.light
-                        )
+            for path, member in self.planner.list_members(variable):
+                self._retype_declared(path, member.line, member.name)
         elif variable.kind == "local":
             for each in fn.assigned.get(variable.name, ()):
                 if each.type and "<" in each.type:
-                    self._get_cpp(fn.source.path).retype_member(each.line, variable.name, self.type, self.light)
+                    self._retype_declared(fn.source.path, each.line, variable.name)
         else:
             for constant, source in self.code.list_constants(variable, fn):
-                self._get_cpp(source.path).retype_member(constant.line, constant.name, self.type, self.light)
+                self._retype_declared(source.path, constant.line, constant.name)
+
+    def _retype_declared(self, path: str, line: int, name: str) -> None:
+        self._get_cpp(path).retype_member(line, name, self.type, self.light, self.variables)
 
     # Callbacks
 

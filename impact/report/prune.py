@@ -9,7 +9,9 @@ from msgspec import to_builtins
 
 from ...edges.console import format_count, format_json
 from ..prune.planner import PrunePlan, TopicPlan
+from ..prune.savings import TopicSaving
 from ..prune.verify import Verification
+from .bags import format_bytes
 from .columns import LinePart, lay_out
 from .fields import WIDE
 from .schemas import SCHEMA
@@ -22,13 +24,15 @@ _MOST = 12
 
 
 def render_plan_text(
-    plan: PrunePlan, diff: str, everything: bool = False, style: Style = WIDE, gains: Sequence[TopicGain] = ()
-) -> str:
+    plan: PrunePlan, diff: str, everything: bool = False, style: Style = WIDE, gains: Sequence[TopicGain] = (),
+    savings: Sequence[TopicSaving] = (),
+) -> str:  # fmt: skip
     """The lighter messages, then the topics that keep theirs and why, then the changes. everything: fields that are
-    dropped are all named. gains: of the topics that were measured."""
+    dropped are all named. gains: of the topics that were measured. savings: of those whose rate is known."""
     lines: list[str] = []
     for one in plan.plans:
         lines += _render_topic(one, everything, style)
+        lines += (line for saving in savings if saving.topic in one.topics for line in _render_saving(saving, style))
         lines += (line for gain in gains if gain.topic in one.topics for line in _render_gain(gain, style))
         lines.append("")
     for refusal in plan.refusals:
@@ -53,6 +57,13 @@ def _render_topic(one: TopicPlan, everything: bool, style: Style) -> Iterator[st
         text = f"{one.full_bytes:,} B become {one.light_bytes:,} B ({share:.0f} % less)"
         yield from lay_out([LinePart("size", "dim"), LinePart(text)], style, 2, 6)
     yield from lay_out([LinePart("changes", "dim"), LinePart(", ".join(one.files))], style, 2, 6)
+
+
+def _render_saving(saving: TopicSaving, style: Style) -> Iterator[str]:
+    """What a topic no longer sends in a second."""
+    each = f"{saving.saved_bytes:,.0f} B of {saving.full_bytes:,.0f} B in each message"
+    text = f"{each}, {format_bytes(saving.saved_bytes_per_second)}/s at {saving.rate:.4g} Hz"
+    yield from lay_out([LinePart("saves", "dim"), LinePart(saving.topic, "bold"), LinePart(text)], style, 2, 6)
 
 
 def _render_gain(gain: TopicGain, style: Style) -> Iterator[str]:
@@ -88,12 +99,15 @@ def _describe_measurement(gains: Sequence[TopicGain]) -> list[str]:
     return [*describe_conditions(header, cells), "bytes with the 20 that the measurement adds to each message"]
 
 
-def render_plan_json(plan: PrunePlan, version: str, gains: Sequence[TopicGain] = ()) -> str:
-    """The whole plan, without the bytes of files. gains: of the topics that were measured."""
+def render_plan_json(
+    plan: PrunePlan, version: str, gains: Sequence[TopicGain] = (), savings: Sequence[TopicSaving] = ()
+) -> str:
+    """The whole plan, without the bytes of files. gains: of the topics that were measured. savings: of those whose
+    rate is known."""
     document = {
         "schema": SCHEMA,
         "tool": {"name": "rosimpact", "version": version},
-        "plans": [one._asdict() | _list_gains(one, gains) for one in plan.plans],
+        "plans": [one._asdict() | _list_gains(one, gains) | _list_savings(one, savings) for one in plan.plans],
         "refusals": [one._asdict() for one in plan.refusals],
         "changed": sorted(plan.changed),
         "created": sorted(plan.created),
@@ -105,6 +119,12 @@ def _list_gains(one: TopicPlan, gains: Sequence[TopicGain]) -> dict[str, object]
     """The gains of a lighter message's topics; nothing where none was measured."""
     own = [to_builtins(gain._asdict()) for gain in gains if gain.topic in one.topics]
     return {"gains": own} if own else {}
+
+
+def _list_savings(one: TopicPlan, savings: Sequence[TopicSaving]) -> dict[str, object]:
+    """What a lighter message's topics save in a second; nothing where no rate is known."""
+    own = [saving._asdict() for saving in savings if saving.topic in one.topics]
+    return {"savings": own} if own else {}
 
 
 def render_verification(done: Verification, style: Style = WIDE) -> str:

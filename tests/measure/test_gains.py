@@ -209,8 +209,8 @@ def test_what_measuring_needs_is_said_before_anything_is_run(say, monkeypatch):
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        (["--bag", "a.bag"], "--bag: for --measure; add it"),
-        (["--rate", "5", "--loopback"], "--rate, --loopback: for --measure; add it"),
+        (["--rate", "5", "--loopback"], "--loopback: for --measure; add it"),
+        (["--rate", "5", "--undo"], "--rate: stands beside the plan"),
         (["--measure", "--undo"], "--measure: stands beside the plan"),
         (["--measure", "--verify"], "--measure: stands beside the plan"),
         (["--measure", "--format", "patch"], "--measure: stands beside the plan"),

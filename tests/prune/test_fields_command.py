@@ -52,7 +52,9 @@ def test_a_topic_that_is_not_there(option, command):
     assert err == f"rosimpact: {option} /repotr: no such topic; `/report` is the nearest\n"
 
 
-def test_a_recording_says_what_that_takes(tmp_path):
+@pytest.fixture
+def track_bag(tmp_path) -> str:
+    """Eleven messages of /track in a second, of 9 + 84 + 84 + 34 bytes."""
     rosbag1 = pytest.importorskip("rosbags.rosbag1")
     from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
@@ -66,7 +68,21 @@ def test_a_recording_says_what_that_takes(tmp_path):
         connection = writer.add_connection("/track", "fleet_msgs/msg/Track", typestore=store)
         for number in range(11):
             writer.write(connection, number * 10**8, store.serialize_ros1(message, "fleet_msgs/msg/Track"))
-    status, out, _ = run(str(FLEET), "--bag", str(tmp_path / "track.bag"))
+    return str(tmp_path / "track.bag")
+
+
+def test_a_recording_says_what_that_takes(track_bag):
+    status, out, _ = run(str(FLEET), "--bag", track_bag)
     assert status == 0
-    # Of 9 + 84 + 84 + 34 bytes, ten times a second.
     assert "/track  read by nobody here:  ys, notes: 118 B of 211 B in each message, 1.2 kB/s" in out
+
+
+def test_a_plan_says_what_it_saves_in_a_second(track_bag):
+    status, out, _ = run(str(FLEET), "--topic", "/track", "--bag", track_bag, command="prune")
+    assert status == 0
+    assert "  saves  /track  118 B of 211 B in each message, 1.2 kB/s at 10 Hz\n" in out
+    status, out, _ = run(str(FLEET), "--topic", "/track", "--rate", "100", "--format", "json", command="prune")
+    assert status == 0
+    (plan,) = json.loads(out)["plans"]
+    expected = {"topic": "/track", "rate": 100.0, "full_bytes": 196.0, "saved_bytes": 98.0}
+    assert plan["savings"] == [{**expected, "saved_bytes_per_second": 9800.0}]

@@ -265,6 +265,25 @@ def test_a_publisher_whose_type_has_another_name(tmp_path):
     assert refusal.reason == "`pub_` at nodes/src/talk.cpp:14 is of type `Out`"
 
 
+@pytest.mark.parametrize("both", [False, True])
+def test_publishers_that_are_declared_together(both, tmp_path):
+    talk = ROS2_TALK.replace("SharedPtr pub_;", "SharedPtr pub_, more_;").replace(
+        'Node("talk") {', 'Node("talk") { \nmore_ = create_publisher<msgs::msg::State>("more", 10);\n')  # fmt: skip
+    hear = ROS2_HEAR.replace('      "state", 10, [this]', '      "more", 10, [this]')
+    files = {**ROS2, "nodes/src/talk.cpp": talk, "nodes/src/hear.cpp": hear if both else ROS2_HEAR}
+    found = prepare(write(tmp_path, files)).plan
+    assert [plan.topics for plan in found.plans] == ([("/more", "/state")] if both else [])
+    reasons = {one.topic: one.reason for one in found.refusals}
+    assert list(reasons) == ([] if both else ["/more", "/state"])
+    assert both or "nobody else reads /more" in reasons["/state"]
+
+
+def test_a_publisher_that_is_declared_with_something_else(tmp_path):
+    talk = ROS2_TALK.replace("SharedPtr pub_;", "SharedPtr pub_, last_;")
+    (refusal,) = prepare(write(tmp_path, {**ROS2, "nodes/src/talk.cpp": talk})).plan.refusals
+    assert refusal.reason == "`pub_` at nodes/src/talk.cpp:13 is declared with `last_`, which keeps its type"
+
+
 def test_ros2(tmp_path):
     prepared = prepare(write(tmp_path, ROS2))
     (plan,) = prepared.plan.plans
@@ -358,6 +377,31 @@ def test_python(tmp_path):
             compile(data, path, "exec")
 
 
+# What a callback in Python asks for beside the level, and what is kept, or the reason why nothing is dropped.
+ASKED = {
+    "the class": ("isinstance(state, State)", "nodes/scripts/hear.py:6 asks for the class of the message"),
+    "the type": ("type(state) is State", "nodes/scripts/hear.py:6 asks for the class of the message"),
+    "the class of a part": ("state.at.x, isinstance(state.at, Point)",
+                            "nodes/scripts/hear.py:6 asks for the class of the message"),
+    "the class of a number": ("isinstance(state.level, int)", ("level",)),
+    "whether there is a field": ('hasattr(state, "text")', ("level", "text")),
+    "whether there is any field": ("hasattr(state, NAME)", "the whole message is handed on: given"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ASKED)
+def test_what_a_class_is_asked_for_stays(name, tmp_path):
+    code, expected = ASKED[name]
+    files = {name: text for name, text in ROS1.items() if name.startswith("msgs/") or name == "nodes/package.xml"}
+    hear = PYTHON["nodes/scripts/hear.py"].replace("import msgs.msg\n\n", "from msgs.msg import Point, State\n")
+    hear = hear.replace("msgs.msg.State", "State").replace("sum(p.y for p in state.points)", f"state.level, {code}")
+    plan = prepare(write(tmp_path, {**files, **PYTHON, "nodes/scripts/hear.py": hear})).plan
+    if isinstance(expected, tuple):
+        assert [one.keep for one in plan.plans] == [expected]
+    else:
+        assert plan.plans == () and plan.refusals[0].reason.startswith(expected)
+
+
 def test_topics_with_equal_needs_share_a_message(tmp_path):
     shutil.copytree(FLEET, tmp_path / "fleet")
     brain = tmp_path / "fleet/src/fleet_brain/src/brain.cpp"
@@ -372,6 +416,60 @@ def test_topics_with_equal_needs_share_a_message(tmp_path):
     plans = {topic: plan.light for plan in prepare(tmp_path / "fleet").plan.plans for topic in plan.topics}
     assert plans["/archive"] == plans["/spare_report"] == "fleet_msgs/ReportArchiveLight"
     assert plans["/report"] != plans["/archive"]
+
+
+TWO_TALK = """#include <ros/ros.h>
+#include <msgs/State.h>
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "talk");
+  ros::NodeHandle nh;
+  ros::Publisher one = nh.advertise<msgs::State>("one", 1);
+  ros::Publisher two = nh.advertise<msgs::State>("two", 1);
+  msgs::StatePtr state(new msgs::State);
+  one.publish(*state);
+  two.publish(state);
+}
+"""
+TWO_HEAR = """#include <ros/ros.h>
+#include <msgs/State.h>
+
+int help(const msgs::State& s) { return s.level; }
+void onOne(const msgs::State& state) { help(state); }
+void onTwo(const msgs::State& state) { help(state); }
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "hear");
+  ros::NodeHandle nh;
+  ros::Subscriber one = nh.subscribe("one", 1, onOne);
+  ros::Subscriber two = nh.subscribe("two", 1, onTwo);
+  ros::spin();
+}
+"""
+
+
+def test_a_file_that_uses_a_shared_message_for_two_topics_defines_its_functions_once(tmp_path):
+    files = {**ROS1, "nodes/src/talk.cpp": TWO_TALK, "nodes/src/hear.cpp": TWO_HEAR}
+    prepared = prepare(write(tmp_path, files))
+    (plan,) = prepared.plan.plans
+    assert (plan.topics, plan.light, plan.keep) == (("/one", "/two"), "msgs/StateOneLight", ("level",))
+    talk, hear = (prepared.plan.changed[f"nodes/src/{name}.cpp"].decode() for name in ("talk", "hear"))
+    assert talk.count("inline msgs::StateOneLight fill_state_one_light(") == 1
+    assert talk.count("inline auto fill_state_one_light(") == 1
+    assert hear.count("inline msgs::State widen_state_one_light(") == 1
+    assert "one.publish(fill_state_one_light(*state));" in talk
+    assert "two.publish(fill_state_one_light(state));" in talk
+
+
+def test_a_lighter_message_is_not_called_like_one_of_another_package(tmp_path):
+    files = {
+        "more/package.xml": ROS1["msgs/package.xml"].replace("msgs", "more"),
+        "more/CMakeLists.txt": ROS1["msgs/CMakeLists.txt"].replace("msgs", "more").replace("State.", "statelight."),
+        "more/msg/statelight.msg": "int8 x\n",
+        "more/msg/Point.msg": "float64 x\n",
+    }
+    prepared = plan_ros1(tmp_path, "use(state->level);", **files)
+    assert [plan.light for plan in prepared.plan.plans] == ["msgs/StateLight2"]
 
 
 def read_all(root: Path) -> dict[str, bytes]:

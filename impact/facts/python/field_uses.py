@@ -7,15 +7,16 @@ name holds.
 from __future__ import annotations
 
 import ast
+from collections import Counter
 
-from ..field_uses import FieldFile, FieldFunction, PathUse
+from ..field_uses import TYPE_TESTS, FieldFile, FieldFunction, PathUse
 from ..place import Problem
 from .source import read
 from .text import SourceText
 
 _THROUGH = frozenset(("copy", "deepcopy", "copy.copy", "copy.deepcopy", "list", "tuple", "reversed", "iter", "sorted",
                       "next", "cast", "typing.cast", "set"))  # fmt: skip
-_TESTS = frozenset(("isinstance", "hasattr", "type", "id", "callable", "issubclass"))
+_TESTS = frozenset(("isinstance", "type", "id", "callable", "issubclass"))
 _ADDS = frozenset(("append", "appendleft", "add", "put", "insert", "put_nowait", "push", "extend"))
 _CHANGES = frozenset(("append", "extend", "insert", "clear", "reverse", "appendleft"))
 _TAKES = frozenset(("pop", "popleft", "get", "get_nowait", "setdefault"))
@@ -42,6 +43,35 @@ def extract(data: bytes) -> FieldFile:
     return FieldFile("python", tuple(one for one in reader.functions if one.uses), problems=source.problems)
 
 
+def _list_texts(tree: ast.Module) -> dict[str, str]:
+    """The texts of names that a file gives a value once, at its top."""
+    found = {
+        target.id: node.value.value
+        for node in tree.body
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
+        for target in node.targets
+        if isinstance(target, ast.Name)
+    }
+    if not found:
+        return {}
+    # Whatever else may give a name a value: assignments, parameters, imports, patterns, functions and classes.
+    given: Counter[str] = Counter()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load):
+            given[node.id] += 1
+        elif isinstance(node, ast.arg):
+            given[node.arg] += 1
+        elif isinstance(node, ast.alias):
+            given[(node.asname or node.name).partition(".")[0]] += 1
+            given.update(found if node.name == "*" else ())
+        elif isinstance(node, (ast.Global, ast.Nonlocal)):
+            given.update(node.names)
+        else:
+            name = getattr(node, "name", None) or getattr(node, "rest", None)
+            given.update((name,) if isinstance(name, str) else ())
+    return {name: text for name, text in found.items() if given[name] == 1}
+
+
 class _Reader(SourceText):
     """The reader of a file."""
 
@@ -52,12 +82,15 @@ class _Reader(SourceText):
         # Names by which the functions around know their object.
         self.own: tuple[str, ...] = ()
         self.parents: dict[ast.AST, ast.AST] = {}
+        # Texts of names that stand for one alone in the whole file.
+        self.texts: dict[str, str] = {}
 
     def read_module(self, tree: ast.Module) -> None:
         """The whole file."""
         for node in ast.walk(tree):
             for child in ast.iter_child_nodes(node):
                 self.parents[child] = node
+        self.texts = _list_texts(tree)
         self._walk_children(tree)
         self.functions.insert(0, FieldFunction("", 0, 0, tuple(self.uses)))
 
@@ -112,7 +145,7 @@ class _Reader(SourceText):
     def _add(
         self, path: str, how: str, node: ast.AST, to: str = "", place: int = 0, count: int = 0, type_: str = ""
     ) -> None:
-        if path == "this" or (how in ("test", "size") and "." not in path):
+        if path == "this" or (how in ("test", "size") and "." not in path and to not in TYPE_TESTS):
             return  # it reads nothing
         self.uses.append(PathUse(path, how, node.lineno, to[:_LONGEST], place, count, type_[:200]))  # type: ignore
 
@@ -198,13 +231,26 @@ class _Reader(SourceText):
             return None
         return element, parent
 
+    def _find_text(self, node: ast.expr) -> str:
+        """The text that an expression always is, empty where it may be another."""
+        if isinstance(node, ast.Name):
+            return self.texts.get(node.id, "")
+        return str(node.value) if isinstance(node, ast.Constant) else ""
+
     def _climb_call(self, path: str, at: ast.AST, call: ast.Call, node: ast.AST) -> tuple[str, ast.AST] | None:
         if call.func is at:
             self._add(path, "use", node, "called")
             return None
         callee = _spell(call.func, self.own)
-        if callee == "getattr" and len(call.args) > 1 and call.args[0] is at and isinstance(call.args[1], ast.Constant):
-            return f"{path}.{call.args[1].value}", call
+        name = self._find_text(call.args[1]) if len(call.args) > 1 and call.args[0] is at else ""
+        if callee == "getattr" and name:
+            return f"{path}.{name}", call
+        if callee == "hasattr":
+            if name:
+                self._add(f"{path}.{name}", "test", node, callee)
+            else:
+                self._add(path, "use", node, "given")
+            return None
         if callee == "sorted" and call.keywords and not self._pass_to_key(path, call, node):
             self._add(path, "use", node, "sorted by a key")
             return None

@@ -6,10 +6,11 @@ Sound before clever: what cannot be followed is a reading of all that is handed 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
-from ...facts.field_uses import PathUse
+from ...facts.field_uses import TYPE_TESTS, PathUse
 from ...facts.flow import FlowExpr
 from ..flow.code import FlowCode, Fn, Variable, get_tail
 from ..flow.types import Cls, find_interface, split_name
@@ -51,13 +52,14 @@ class Reading(NamedTuple):
     """reads: leaves by where they are read first. sizes: arrays of messages whose number of elements is asked for.
     escapes: in the order in which they were found; what is below their fields counts as read. holders: variables that
     hold the message, with () for the whole of it, or a field. named: fields that the code names, whatever it does with
-    them."""
+    them. typed: messages in it, () for itself, whose class the code asks for."""
 
     reads: dict[Path, ReadAt]
     sizes: dict[Path, ReadAt]
     escapes: tuple[Escape, ...]
     holders: frozenset[Holder] = frozenset()
     named: frozenset[Path] = frozenset()
+    typed: Mapping[Path, ReadAt] = MappingProxyType({})
 
 
 class FieldReader:
@@ -82,6 +84,7 @@ class _Walk:
         self.sizes: dict[Path, ReadAt] = {}
         self.escapes: dict[tuple[Path, str], Escape] = {}
         self.named: dict[Path, ReadAt] = {}
+        self.typed: dict[Path, ReadAt] = {}
         self.seen: set[Holder] = set()
         self.left: list[Holder] = []
         self.results = _Results()
@@ -104,9 +107,8 @@ class _Walk:
             if not self._holds_other(variable, place):
                 self.escape_at(spot, f"`{place.use.path}` is no field that is known", place)
         self._count_elements()
-        return Reading(
-            self.reads, self.sizes, tuple(self.escapes.values()), frozenset(self.seen), frozenset(self.named)
-        )
+        escapes, seen, named = tuple(self.escapes.values()), frozenset(self.seen), frozenset(self.named)
+        return Reading(self.reads, self.sizes, escapes, seen, named, self.typed)
 
     def _count_elements(self) -> None:
         """Elements of which nothing is read may still be counted: `for p in points: number += 1`."""
@@ -187,6 +189,8 @@ class _Walk:
         use = place.use
         if spot.kind != "none" and spot.path:
             self.named.setdefault(spot.path, ReadAt(place.fn.source.path, use.line))
+        if use.how == "test" and use.to in TYPE_TESTS and "." not in use.path and spot.kind != "message":
+            return  # of a variable that holds a value or an array, which stays what it is
         if use.how in ("write", "change") and not (use.how == "write" and use.to not in ("=", "del", "")):
             return
         if spot.kind == "leaf":
@@ -207,6 +211,8 @@ class _Walk:
         elif use.how == "returned":
             self._judge_returned(place, spot)
         elif (use.how == "method" and use.to in _DROPS) or (use.how == "test" and spot.kind == "message"):
+            if use.to in TYPE_TESTS:
+                self.typed.setdefault(spot.path, ReadAt(place.fn.source.path, use.line))
             return
         elif use.how == "method":
             self.escape_at(spot, f"`{use.to}()` is called on it", place)

@@ -295,7 +295,9 @@ class TopicReader:
         sizes = {path: place for one in reversed(readings) for path, place in one.sizes.items()}
         escapes = tuple(dict.fromkeys(escape for one in readings for escape in one.escapes))
         holders = frozenset[Holder]().union(*(one.holders for one in readings))
-        return Reading(reads, sizes, escapes, holders, frozenset[Path]().union(*(one.named for one in readings)))
+        named = frozenset[Path]().union(*(one.named for one in readings))
+        typed = {path: place for one in reversed(readings) for path, place in one.typed.items()}
+        return Reading(reads, sizes, escapes, holders, named, typed)
 
     # Publishers
 

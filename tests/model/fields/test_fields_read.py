@@ -280,6 +280,12 @@ PYTHON = {
     "a slice": ("x = [p.x for p in msg.points[1:]]", "", "", "points[].x", ""),
     "a name for a part": ("p = msg.pose.position\nx = p.x", "", "", "pose.position.x", ""),
     "getattr": ('x = getattr(msg, "level")', "", "", "level", ""),
+    "getattr of a constant": ("x = getattr(msg, FIELD)", "", 'FIELD = "level"\n', "level", ""),
+    "getattr of a constant that is changed": ("x = getattr(msg, FIELD)", "",
+                                              'FIELD = "level"\nFIELD += "s"\n', "", "*"),
+    "getattr of a parameter": ("self.show(msg, 'name')",
+                               "def show(self, status, FIELD):\n    x = getattr(status, FIELD)",
+                               'FIELD = "level"\n', "", "*"),
     "getattr of what is not known": ("x = getattr(msg, self.field)", "", "", "", "*"),
     "kept": ("self.last = msg", "def tick(self):\n    return self.last.level", "", "level", ""),
     "a property": ("self._last = msg", "@property\ndef seen(self):\n    return self._last\n"
