@@ -80,7 +80,7 @@ EDITS = {
     "a declaration": write("dogs/package.xml", MANIFEST.format(name="dogs", depends="<depend>sled</depend>")),
     "CMake": append("dogs/CMakeLists.txt", "find_package(nosuch_thing REQUIRED)\n"),
     "a new file": write("dogs/src/more.cpp", "#include <vector>\n"),
-    "settings": write("rosimpact.toml", '[check]\nignore = ["missing-include"]\n'),
+    "settings": write("rosimpact.toml", '[check]\nignore = ["undeclared-package"]\n'),
     "severities": write("rosimpact.toml", '[paths."dogs/**"]\nseverity = {undeclared-package = "note"}\n'),
     "a marker": write("dogs/COLCON_IGNORE", ""),
     "no marker": lambda workspace: (workspace / "dogs/COLCON_IGNORE").unlink(),

@@ -31,6 +31,7 @@ def test_findings_are_the_same_with_any_hash_seed(tmp_path):
             "ws",
             "--target",
             "jazzy",
+            "--preview",
             "--format",
             "json",
         ]
