@@ -143,6 +143,7 @@ class Executor:
         self.bounds = bounds
         self.started = time.monotonic()
         self.deadline = self.started + bounds.seconds
+        self.memory_before = read_memory_in_use()
         self.solving = Solving(self.deadline)
         self.ranges = Ranges(self.solving.inputs)
         self.places = PlaceReader(is_workspace_file)
@@ -603,7 +604,7 @@ class Executor:
         return (
             time.monotonic() > self.deadline
             or len(self.exploration.paths) >= self.bounds.paths
-            or read_memory_in_use() > self.bounds.memory
+            or read_memory_in_use() - self.memory_before > self.bounds.memory
         )
 
     def _run_way(self, state: State):
@@ -652,7 +653,7 @@ class Executor:
         if not self.instructions & 511:
             if time.monotonic() > self.deadline:
                 raise self.make_unknown("time limit")
-            if not self.instructions & 65535 and read_memory_in_use() > self.bounds.memory:
+            if not self.instructions & 65535 and read_memory_in_use() - self.memory_before > self.bounds.memory:
                 raise self.make_unknown("memory limit")
             if state.steps > _MOST_STEPS:
                 raise self.make_unknown("too many instructions")
