@@ -194,7 +194,7 @@ define void @entry() {
     few = explore([many], "entry", Bounds(paths=2, seconds=30), lambda path: True)
     assert len(few.paths) == 2
     assert few.left == 2
-    none = explore([many], "entry", Bounds(memory=1, seconds=30), lambda path: True)
+    none = explore([many], "entry", Bounds(memory=-1, seconds=30), lambda path: True)
     assert (none.paths, none.left) == ([], 1)
 
 
