@@ -6,39 +6,21 @@ A workspace is hostile input. What is run here is its own code, and only because
 from __future__ import annotations
 
 import os
+import resource
+import shutil
 import signal
 import subprocess
-import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-from ...edges.files import read_text
+from ...edges.files import read_text, write_file
 
-# Sets limits and leaves the network, then becomes the program; its own file says whether the network is gone.
-_LAUNCHER = """
-import ctypes, os, resource, sys
-status, seconds, memory, size, *command = sys.argv[1:]
-def limit(kind, most):
-    hard = resource.getrlimit(kind)[1]
-    resource.setrlimit(kind, (most if hard < 0 else min(most, hard),) * 2)
-limit(resource.RLIMIT_CPU, int(seconds))
-limit(resource.RLIMIT_FSIZE, int(size))
-limit(resource.RLIMIT_CORE, 0)
-if int(memory):
-    limit(resource.RLIMIT_AS, int(memory))
-gone = False
-try:
-    own = 0x40000000 if os.geteuid() == 0 else 0x40000000 | 0x10000000
-    gone = ctypes.CDLL(None).unshare(own) == 0
-except (AttributeError, OSError):
-    pass
-with open(status, "w") as file:
-    file.write("offline" if gone else "online")
-os.execvp(command[0], command)
-"""
 _MOST_OUTPUT = 5_000_000
+_FILE_BYTES = 50_000_000
 
 
 class Finished(NamedTuple):
@@ -61,35 +43,66 @@ def run_apart(
     seconds: of the clock, and of the processor rounded up. memory: bytes of addresses, 0 for no limit (a program with
     AddressSanitizer reserves terabytes and has a limit of its own). environment: besides PATH and a folder for
     temporary files. Raises OSError where the command cannot be started."""
+    isolation = find_isolation()
     with tempfile.TemporaryDirectory(prefix="rosimpact-") as own:
-        status = Path(own, "status")
-        limits = (str(status), str(int(seconds) + 1), str(memory), str(50_000_000))
         known = {"PATH": os.environ.get("PATH", os.defpath), "TMPDIR": own, "HOME": own, "LANG": "C.UTF-8"}
-        process = subprocess.Popen(
-            [sys.executable, "-I", "-c", _LAUNCHER, *limits, *command], cwd=folder, stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", start_new_session=True,
-            env={**known, **(environment or {})},
-        )  # fmt: skip
-        is_late = False
+        given, told, errors = (Path(own, name) for name in ("input", "output", "errors"))
+        write_file(given, text.encode())
+        # Files, not pipes: what a program prints without an end stops at the limit of a file's size.
+        with given.open("rb") as source, told.open("wb") as output, errors.open("wb") as complaints:
+            process = subprocess.Popen(
+                [*isolation, *command], cwd=folder, stdin=source, stdout=output, stderr=complaints,
+                start_new_session=True, env={**known, **(environment or {})},
+                preexec_fn=make_limiter(int(seconds) + 1, _FILE_BYTES, memory),
+            )  # fmt: skip
+            try:
+                process.wait(seconds)
+                is_late = False
+            except subprocess.TimeoutExpired:
+                is_late = True
+            finally:
+                end_group(process)
+        texts = [read_text(path, _FILE_BYTES, "replace")[:_MOST_OUTPUT] for path in (told, errors)]
+        return Finished(process.returncode, texts[0], texts[1], is_late, bool(isolation))
+
+
+@cache
+def find_isolation() -> tuple[str, ...]:
+    """The command in front of a program that cuts the network off; empty where the system does not allow it."""
+    unshare = shutil.which("unshare")
+    for flags in (("--net", "--map-root-user"), ("--net",)):
+        if unshare is None:
+            break
+        command = (unshare, *flags, "--")
         try:
-            output, errors = process.communicate(text, timeout=seconds)
-        except subprocess.TimeoutExpired:
-            is_late = True
-            _stop(process)
-            output, errors = process.communicate()
-        except BaseException:
-            _stop(process)
-            raise
-        finally:
-            _stop(process)
-        told = read_text(status, 100) if status.exists() else ""
-        return Finished(process.returncode, output[:_MOST_OUTPUT], errors[:_MOST_OUTPUT], is_late, told == "offline")
+            done = subprocess.run([*command, "true"], capture_output=True, timeout=10)
+        except (OSError, subprocess.TimeoutExpired):
+            continue
+        if done.returncode == 0:
+            return command
+    return ()
 
 
-def _stop(process: subprocess.Popen[str]) -> None:
-    """Ends a program with everything that it started."""
-    try:
+def end_group(process: subprocess.Popen) -> None:
+    """Ends a program with all that it started."""
+    with suppress(ProcessLookupError, PermissionError):
         os.killpg(process.pid, signal.SIGKILL)
-    except (ProcessLookupError, PermissionError):
-        if process.poll() is None:
-            process.kill()
+    process.wait()
+
+
+def make_limiter(seconds: int, file_bytes: int, memory: int = 0, files: int = 0) -> Callable[[], None]:
+    """What a new process calls before it becomes a program. seconds: of the processor; memory: bytes of addresses;
+    files: that are open at once; 0 for no limit of these two."""
+    wanted = (
+        (resource.RLIMIT_CPU, seconds), (resource.RLIMIT_FSIZE, file_bytes), (resource.RLIMIT_CORE, None),
+        (resource.RLIMIT_AS, memory), (resource.RLIMIT_NOFILE, files),
+    )  # fmt: skip
+
+    def limit() -> None:
+        for what, most in wanted:
+            if most is None or most:
+                hard = resource.getrlimit(what)[1]
+                allowed = (most or 0) if hard < 0 else min(most or 0, hard)
+                resource.setrlimit(what, (allowed, allowed))
+
+    return limit

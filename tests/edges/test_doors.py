@@ -62,7 +62,7 @@ DOORS = {
         "impact/measure/children.py": "ip, tc, cmake and ROS's generators, which get fields and types alone",
         "impact/prune/verify.py": "the build of the workspace that the user asked for",
         "impact/values/harness/toolchain.py": "the compiler, on a harness",
-        "impact/values/harness/replay.py": "whether the network can be cut off",
+        "impact/values/sandbox.py": "whether the network can be cut off",
     },
     "subprocess.Popen": {
         "impact/measure/children.py": "measuring nodes and their master",

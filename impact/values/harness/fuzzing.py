@@ -11,8 +11,9 @@ from typing import NamedTuple
 
 from ....edges.files import read_text
 from ..outcomes import Reaction, Witness
+from ..sandbox import find_isolation
 from .compile import CannotCompile
-from .replay import Replayed, find_isolation, replay, run_limited
+from .replay import Replayed, replay, run_limited
 from .session import PreparedCallback
 
 _ROUNDS = 8

@@ -8,19 +8,15 @@ from __future__ import annotations
 
 import os
 import re
-import resource
-import shutil
-import signal
 import subprocess
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
-from functools import cache
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 from ....edges.files import read_text, write_file
 from ..outcomes import NOWHERE, CodeLine, CrashKind, Observable, Reaction, Witness
+from ..sandbox import end_group, find_isolation, make_limiter
 
 SECONDS = 2
 """Of one witness, from which on a callback counts as endless."""
@@ -76,23 +72,6 @@ def _is_same_file(one: CodeLine, other: CodeLine) -> bool:
     return one.path == other.path or one.path.endswith(f"/{other.path}") or other.path.endswith(f"/{one.path}")
 
 
-@cache
-def find_isolation() -> tuple[str, ...]:
-    """The command in front of a program that cuts the network off; empty where the system does not allow it."""
-    unshare = shutil.which("unshare")
-    for flags in (("--net", "--map-root-user"), ("--net",)):
-        if unshare is None:
-            break
-        command = (unshare, *flags, "--")
-        try:
-            done = subprocess.run([*command, "true"], capture_output=True, timeout=10)
-        except (OSError, subprocess.TimeoutExpired):
-            continue
-        if done.returncode == 0:
-            return command
-    return ()
-
-
 def replay(
     program: Path, entry: str, witnesses: Sequence[Mapping[str, int]], root: Path, seconds: int = SECONDS
 ) -> list[Replayed]:
@@ -131,7 +110,8 @@ def run_limited(
         try:
             process = subprocess.Popen(
                 list(command), cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                stderr=errors, start_new_session=True, preexec_fn=_make_limiter(seconds),
+                stderr=errors, start_new_session=True,
+                preexec_fn=make_limiter(int(seconds) + 5, _FILE_BYTES, files=256),
             )  # fmt: skip
         except OSError as error:
             return f"cannot be run: {error.strerror or error}"
@@ -140,27 +120,8 @@ def run_limited(
         except subprocess.TimeoutExpired:
             return "took too long"
         finally:
-            _end_group(process)
+            end_group(process)
     return ""
-
-
-def _end_group(process: subprocess.Popen) -> None:
-    """Ends a program with all that it started."""
-    with suppress(ProcessLookupError, PermissionError):
-        os.killpg(process.pid, signal.SIGKILL)
-    process.wait()
-
-
-def _make_limiter(seconds: float) -> Callable[[], None]:
-    def limit() -> None:
-        whole = int(seconds) + 5
-        for what, most in (
-            (resource.RLIMIT_CPU, whole), (resource.RLIMIT_FSIZE, _FILE_BYTES), (resource.RLIMIT_CORE, 0),
-            (resource.RLIMIT_NOFILE, 256),
-        ):  # fmt: skip
-            resource.setrlimit(what, (most, most))
-
-    return limit
 
 
 class _Case:
