@@ -6,10 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from .ir.terms import read_signed, unpack_float
-from .outcomes import Bounds, CodeLine, CrashKind, InputKind, Reaction
+from .outcomes import NOWHERE, Bounds, CodeLine, CrashKind, InputKind, Reaction
 from .projection import FieldValues
-
-NO_PLACE = CodeLine("", 0)
 
 
 @dataclass(frozen=True)
@@ -21,7 +19,7 @@ class CallbackExample:
     values: Mapping[str, int]
     kinds: Mapping[str, tuple[InputKind, int, bool]]
     crash: CrashKind | None = None
-    place: CodeLine = NO_PLACE
+    place: CodeLine = NOWHERE
     detail: str = ""
     assumed: tuple[str, ...] = ()
     effects: tuple[str, ...] = ()

@@ -6,10 +6,13 @@ import re
 from collections.abc import Callable
 from typing import Any
 
+import z3
+
 from ...facts.interface import PRIMITIVES, Field, Section, make_full_name
+from ..ir.terms import pack_float
 from ..outcomes import InputKind
 from .run import PythonRun
-from .terms import ListValue, Real, Record, SymbolicText, Truth, Whole
+from .terms import ListValue, Real, Record, SymbolicText, Truth, Whole, convert_to_whole, extend
 
 FindSection = Callable[[str], Section | None]
 """The fields of `package/Name`, None where they are not known."""
@@ -168,16 +171,8 @@ class Messages:
 
 
 def _put(found: dict[str, Any], kinds: dict[str, Any], path: str, value: Any, kind: InputKind) -> None:
-    import struct
-
-    import z3
-
-    from .terms import convert_to_whole, extend
-
     if kind is InputKind.FLOAT64:
-        term = (
-            z3.fpToIEEEBV(value.term) if isinstance(value, Real) else struct.unpack("<Q", struct.pack("<d", value))[0]
-        )
+        term = z3.fpToIEEEBV(value.term) if isinstance(value, Real) else pack_float(value, 64)
         found[path], kinds[path] = term, (kind, 64, True)
         return
     whole = convert_to_whole(value)

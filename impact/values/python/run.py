@@ -9,6 +9,7 @@ from typing import Any
 
 import z3
 
+from ..ir.terms import pack_float
 from ..outcomes import NOWHERE, Bounds, CodeLine, InputKind, Observable, Sent, SymbolicInput
 from .terms import (
     FLOAT32,
@@ -275,11 +276,7 @@ _GUESSES = ((0.0,), (1.0,), (1.0, 0.0), (0.5, 2.0), (-1.0,), (-1.0, 1.0, 10.0), 
 
 
 def _encode(number: float, bits: int) -> z3.BitVecRef:
-    import struct
-
-    if bits == 32:
-        return z3.BitVecVal(struct.unpack("<I", struct.pack("<f", number))[0], 32)
-    return z3.BitVecVal(struct.unpack("<Q", struct.pack("<d", number))[0], 64)
+    return z3.BitVecVal(pack_float(number, bits), bits)
 
 
 def list_variables(term: z3.ExprRef) -> list[z3.ExprRef]:

@@ -11,6 +11,8 @@ from typing import Any, NamedTuple
 
 import z3
 
+from ..ir.terms import unpack_float
+
 FLOAT64 = z3.Float64()
 FLOAT32 = z3.Float32()
 NEAREST = z3.RNE()
@@ -134,9 +136,7 @@ def make_real(term: z3.FPRef, span: RealSpan = ANY) -> Real | float:
     if isinstance(value, z3.FPNumRef):
         bits = z3.simplify(z3.fpToIEEEBV(value))
         if z3.is_bv_value(bits):
-            import struct
-
-            return struct.unpack("<d", struct.pack("<Q", bits.as_long()))[0]
+            return unpack_float(bits.as_long(), 64)
         if value.isNaN():
             return float("nan")
     return Real(value, span)
