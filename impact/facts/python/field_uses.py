@@ -63,7 +63,7 @@ def _list_texts(tree: ast.Module) -> dict[str, str]:
             given[node.arg] += 1
         elif isinstance(node, ast.alias):
             given[(node.asname or node.name).partition(".")[0]] += 1
-            given.update(found if node.name == "*" else ())
+            given.update(tuple(found) if node.name == "*" else ())
         elif isinstance(node, (ast.Global, ast.Nonlocal)):
             given.update(node.names)
         else:
