@@ -23,6 +23,7 @@ import tempfile
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
@@ -66,6 +67,8 @@ class Case:
         self.messages: dict[str, list[Field]] = {}
         self.topics: list[tuple[str, str]] = []
         self._count = 0
+        # Every callback of a message's type reads the same fields, so that topics share a lighter message.
+        self.alike = self.chance(0.25)
         self._make_messages()
         (CppWriter if language == "cpp" else PythonWriter)(self).write()
         self._finish()
@@ -100,6 +103,18 @@ class Case:
         tops = list(self.messages)[-2:]
         for number in range(self.random.randint(1, 3)):
             self.topics.append((f"topic{number}", pick(tops)))
+        if self.alike:
+            self.topics.append((f"topic{len(self.topics)}", self.topics[0][1]))
+
+    @contextmanager
+    def choose_alike(self, type_: str) -> Iterator[None]:
+        """Within it, what is read of a message of a type is the same each time, if the case is such a one."""
+        state = self.random.getstate()
+        if self.alike:
+            self.random.seed(f"{self.name} {type_}")
+        yield
+        if self.alike:
+            self.random.setstate(state)
 
     def _finish(self) -> None:
         head = '<package format="2"><name>{}</name><version>1.0.0</version><description>d</description>\n' \
@@ -190,10 +205,10 @@ class CppWriter:
                                             "template", "macro", "overload", "constructed"))  # fmt: skip
         lines.append(f'std::cout << "{topic} {name}";')
         if form == "direct" or (form == "pointer" and (access == "." or base == "e")):
-            lines += self.read(f"{base}{access}", type_)
+            lines += self.read_whole(f"{base}{access}", type_)
         elif form in ("helper", "template", "overload", "macro"):
             helper = self.case.name_new("help")
-            inner = "\n".join(f"  {one}" for one in self.read("x.", type_))
+            inner = "\n".join(f"  {one}" for one in self.read_whole("x.", type_))
             kind = f"inline void {{}}(const {spelt}& x)"
             kind = "template <class T> void {}(const T& x)" if form == "template" else kind
             self.before.append(f"{kind.format(helper)} {{\n{inner}\n}}")
@@ -205,32 +220,32 @@ class CppWriter:
             lines.append(f"{helper}({whole});")
         elif form == "pointer":
             helper = self.case.name_new("help")
-            inner = "\n".join(f"  {one}" for one in self.read("x->", type_))
+            inner = "\n".join(f"  {one}" for one in self.read_whole("x->", type_))
             self.before.append(f"inline void {helper}(const {spelt}::ConstPtr& x) {{\n{inner}\n}}")
             lines.append(f"{helper}({base});")
         elif form == "member":
             kept = self.case.name_new("last")
             self.members.append(f"{spelt} {kept}_;")
             lines.append(f"{kept}_ = {whole};")
-            lines += self.read(f"{kept}_.", type_)
+            lines += self.read_whole(f"{kept}_.", type_)
         elif form == "alias":
             lines.append(f"const {self.pick((spelt, 'auto'))}& a = {whole};")
-            lines += self.read("a.", type_)
+            lines += self.read_whole("a.", type_)
         elif form == "copy":
             lines.append(self.pick((f"{spelt} c = {whole};", f"{spelt} c({whole});", f"auto c = {whole};")))
-            lines += self.read("c.", type_)
+            lines += self.read_whole("c.", type_)
         elif form == "listed":
             kept = self.case.name_new("list")
             self.members.append(f"std::vector<{spelt}> {kept}_;")
             lines.append(f"{kept}_.push_back({whole});")
-            lines += self.read(f"{kept}_.back().", type_)
+            lines += self.read_whole(f"{kept}_.back().", type_)
         elif form == "struct":
             kept = self.case.name_new("Box")
             self.before.append(f"struct {kept} {{\n  {spelt} inside;\n}};")
-            lines += [f"{kept} box;", f"box.inside = {whole};", *self.read("box.inside.", type_)]
+            lines += [f"{kept} box;", f"box.inside = {whole};", *self.read_whole("box.inside.", type_)]
         elif form == "constructed":
             kept = self.case.name_new("Seen")
-            inner = " ".join(self.read("x.", type_))
+            inner = " ".join(self.read_whole("x.", type_))
             self.before.append(f"struct {kept} {{\n  explicit {kept}(const {spelt}& x) {{ {inner} }}\n}};")
             lines.append(f"{kept} seen({whole});")
         lines.append("std::cout << std::endl;")
@@ -283,6 +298,11 @@ class CppWriter:
             self.case.files["nodes/include/nodes/hear.h"] = f"{guard}{start}{text}{end}"
             return f'#include "nodes/hear.h"\n\n{sources}'
         return f"{start}{text}{sources}"
+
+    def read_whole(self, base: str, type_: str) -> list[str]:
+        """Statements that print some fields of the message of a topic. base: with `.` or `->`."""
+        with self.case.choose_alike(type_):
+            return self.read(base, type_)
 
     def read(self, base: str, type_: str, depth: int = 0) -> list[str]:
         """Statements that print some fields of a message. base: with `.` or `->`."""
@@ -351,11 +371,14 @@ class CppWriter:
             fills = "\n".join(f"  {one}" for one in self.fill("m.", type_, made))
             spelt = self.spell(type_)
             blocks.append(f"{spelt} {made[type_]}(int i)\n{{\n  {spelt} m;\n{fills}\n  return m;\n}}")
-        advertised: list[str] = []
         sends: list[str] = []
+        joined = self.chance(0.25)
+        handles = ", ".join(f"pub{number}" for number, _ in enumerate(self.case.topics))
+        advertised = [f"ros::Publisher {handles};"] if joined else []
         for number, (topic, type_) in enumerate(self.case.topics):
             spelt, pub, name = self.spell(type_), f"pub{number}", f"m{number}"
-            advertised.append(f'  ros::Publisher {pub} = nh.advertise<{spelt}>("{topic}", 10);')
+            declared = "" if joined else "ros::Publisher "
+            advertised.append(f'{declared}{pub} = nh.advertise<{spelt}>("{topic}", 10);')
             make = f"{made[type_]}(i)"
             sends.append(self.pick((
                 f"{spelt} {name} = {make}; {pub}.publish({name});", f"{pub}.publish({make});",
@@ -370,7 +393,7 @@ class CppWriter:
         gap = self.pick(("\n    ", " "))
         return "\n\n".join(blocks) + (
             '\n\nint main(int argc, char** argv) {\n  ros::init(argc, argv, "talk");\n  ros::NodeHandle nh;\nMAIN'
-            + "\n".join(advertised)
+            + "  " + self.pick(("\n  ", "\n  ", " ")).join(advertised)
             + f"\n  for (int i = 0; i < 3 && ros::ok(); ++i) {{\n    {gap.join(sends)}\n    ros::spinOnce();\n  }}\n"
             "  return 0;\n}\n"
         )
@@ -447,27 +470,39 @@ class PythonWriter:
     def _make_callback(self, topic: str, type_: str) -> tuple[list[str], str]:
         name = self.case.name_new("on_")
         lines = [f'out = ["{topic} {name}"]']
-        form = self.pick(("direct",) * 5 + ("helper", "member", "alias", "copy", "listed", "deep", "method", "whole"))
+        form = self.pick(("direct",) * 5 + ("helper", "member", "alias", "copy", "listed", "deep", "method", "whole",
+                                            "asked", "asked"))  # fmt: skip
         if form in ("helper", "method"):
             helper = self.case.name_new("help_")
-            inner = "\n".join(f"    {one}" for one in self.read("x", type_) or ["pass"])
+            inner = "\n".join(f"    {one}" for one in self.read_whole("x", type_) or ["pass"])
             self.before.append(f"def {helper}(x, out):\n{inner}\n")
             lines.append(f"{helper}({self.pick(('m, out', 'm, out=out'))})")
         elif form == "member":
             kept = self.case.name_new("last_")
-            lines += [f"self.{kept} = m", *self.read(f"self.{kept}", type_)]
+            lines += [f"self.{kept} = m", *self.read_whole(f"self.{kept}", type_)]
         elif form == "listed":
             kept = self.case.name_new("list_")
-            lines += [f"{kept} = []", f"{kept}.append(m)", *self.read(f"{kept}[-1]", type_)]
+            lines += [f"{kept} = []", f"{kept}.append(m)", *self.read_whole(f"{kept}[-1]", type_)]
         elif form in ("alias", "copy", "deep"):
             made = {"alias": "m", "copy": "copy.copy(m)", "deep": "copy.deepcopy(m)"}[form]
-            lines += [f"a = {made}", *self.read("a", type_)]
+            lines += [f"a = {made}", *self.read_whole("a", type_)]
         elif form == "whole" and self.chance(0.4):
             lines.append("out.append(str(m))")
+        elif form == "asked":
+            at = self.pick(self.case.messages[type_]).name
+            lines.append(self.pick((f"out.append(isinstance(m, §{type_}))", f"out.append(hasattr(m, {at!r}))",
+                                    "out.append(type(m).__name__)", f"out.append(str(getattr(m, {at!r}))[:9])",
+                                    f"out.append(type(m) is §{type_})")))  # fmt: skip
+            lines += self.read_whole("m", type_)
         else:
-            lines += self.read("m", type_)
+            lines += self.read_whole("m", type_)
         lines.append("print(*out)")
         return lines, name
+
+    def read_whole(self, base: str, type_: str) -> list[str]:
+        """Statements that put some fields of the message of a topic into `out`."""
+        with self.case.choose_alike(type_):
+            return self.read(base, type_)
 
     def read(self, base: str, type_: str) -> list[str]:
         """Statements that put some fields of a message into `out`."""
