@@ -778,7 +778,9 @@ class FlowValues:
         elif each.operator == "for":
             yield from self._evaluate_elements(each.value, writer, each.line, seen)
         elif each.operator == "+=":
-            yield FlowValue(None, "unresolved", f"`{each.target}` is put together in steps")
+            # What is counted has other values beside the first.
+            counted = each.value.kind == "number"
+            yield FlowValue(None, "unresolved", f"`{each.target}` is put together in steps", counted)
 
     def _runs_over_all(self, fn: Fn, line: int) -> bool:
         """Whether a loop does what stands on a line in every turn, not only for options that it recognises."""
@@ -895,10 +897,13 @@ class FlowValues:
                     yield from self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value)))
                 return
         if last == "to_string" and len(value.parts) == 1:
-            for one in self._evaluate(value.parts[0], fn, line, seen):
-                # Of what is no whole number, it is not the same text.
-                whole = one.text is None or is_number(one.text)
-                yield one if whole else FlowValue(None, "unresolved", "a number as a text is not followed")
+            found = list(self._evaluate(value.parts[0], fn, line, seen))
+            # Of what is no whole number, it is not the same text.
+            if found and all(one.text is not None and is_number(one.text) for one in found):
+                yield from found
+            else:
+                reasons = [one.reason for one in found if one.text is None]
+                yield FlowValue(None, "unresolved", (reasons or ["a number as a text is not followed"])[0])
             return
         # Options of ROS 1 are named by the name they are for.
         if (last in _OF_FIRST or (last.startswith("create") and "Options::" in value.text)) and value.parts:
