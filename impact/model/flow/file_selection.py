@@ -95,8 +95,11 @@ def list_run_by_hand(kinds: Mapping[str, str], manifests: Mapping[str, str]) -> 
 
 def may_be_run_by_hand(path: str) -> bool:
     """Whether a file outside of all packages may be a program that is run by hand, or what one imports."""
-    name = path.rpartition("/")[2]
-    return name.endswith(".py") and name not in ("setup.py", "conf.py") and is_code(path, 0)
+    *folders, name = path.split("/")
+    # Only of a package can more be said to be its tests.
+    kept = not any(folder[:1] == "." or folder in ("test", "tests") for folder in folders)
+    tested = name.startswith("test_") or name.endswith("_test.py")
+    return kept and not tested and name.endswith(".py") and name not in ("setup.py", "conf.py")
 
 
 def is_code(path: str, start: int, name: str = "") -> bool:
