@@ -644,8 +644,9 @@ class Join:
             made = list(self._make_parameters(use, those))
             for owner in those if made else ():
                 owners.use(owner)
-            if those and not made:
-                reasons = [value.reason for value in self.list_parameter_names(use)]
+            values = self.list_parameter_names(use)
+            if those and not any(value.text for value in values):
+                reasons = [value.reason for value in values]
                 reason = reasons[0] if reasons else "no name is given"
                 written = unparse(self.calls.find_argument(use, use.row.topic))
                 count.unresolved.append(Unresolved("parameter name", reason, *_get_place(use), written))
@@ -829,10 +830,22 @@ class Join:
         default = unparse(self.calls.find_argument(use, use.row.default)) if use.row.default else ""
         kind = "declared" if use.row.declares else "read"
         nodes = {node.id if node else "": None for node in (_get_node(owner) for owner in owners)}
-        for value in values:
-            if value.text:
-                for node in nodes:
-                    yield ParameterUse(node, value.text, kind, *_get_place(use), default)
+        names = [value.text for value in values if value.text] or [self._spell_parameter_in_part(use)]
+        for name in filter(None, names):
+            for node in nodes:
+                yield ParameterUse(node, name, kind, *_get_place(use), default)
+
+    def _spell_parameter_in_part(self, use: FrameworkCall) -> str:
+        """The name of a parameter with brackets for what is not known of it; empty where none of it is known."""
+        written = self.calls.find_argument(use, use.row.topic)
+        if written is None or written.kind != "join" or written.text not in ("", "+"):
+            return ""
+        known = [(part, self.values.evaluate(part, use.fn, use.call.line)) for part in written.parts]
+        pieces = [found[0].text if len(found) == 1 else None for _, found in known]
+        if not any(piece and _WORD.search(piece) for piece in pieces):
+            return ""
+        spelled = (_spell_open(part) if piece is None else piece for (part, _), piece in zip(known, pieces, strict=True))
+        return "".join(spelled)
 
 
 class _Owners:
