@@ -102,15 +102,16 @@ class SeenPlaces:
         for listed, role in ROLES.items():
             self._have[role].update((one["path"], one["line"]) for one in found[listed])
         self._named = {(one["path"], one["line"]) for one in found["coverage"]["unresolved"]}
-        self._left_out = frozenset(found["coverage"]["uncompiled"])
+        copies = (one["path"] for one in found["coverage"]["unresolved"] if one["what"] == "package")
+        self._left_out = *found["coverage"]["uncompiled"], *(f"{path.rpartition('/')[0]}/" for path in copies)
 
     def has(self, role: str, path: str, line: int) -> bool:
         """Whether it has something of a role there."""
         return not self._have[role].isdisjoint(_list_near(path, line))
 
     def names(self, path: str, line: int) -> bool:
-        """Whether it says that it does not understand the place, or leaves the file out."""
-        return path in self._left_out or not self._named.isdisjoint(_list_near(path, line))
+        """Whether it says that it does not understand the place, or leaves out the file, or its package."""
+        return path.startswith(self._left_out) or not self._named.isdisjoint(_list_near(path, line))
 
 
 def _list_near(path: str, line: int) -> set[tuple[str, int]]:
