@@ -138,6 +138,8 @@ class Calls:
                 continue
             if row.first and not self._fits_first(row.first, fn, call):
                 continue
+            if row.does == "parameter" and row.first == "node" and self.code.list_targets(call.callee, fn):
+                continue  # a helper of the code's own, which is followed
             if row.free or row.on:
                 if free is not None and (free in row.free and (free or not receiver)):
                     return FrameworkCall(fn, row, call)

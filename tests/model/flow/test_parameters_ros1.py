@@ -118,3 +118,24 @@ def test_a_node_handle_that_a_header_declares_in_a_namespace():
     assert [(one.node, one.name, one.default) for one in found.parameters] == [("gps/gps", "rate", "5")]
     unsure = graph({"gps/gps.h": header % "namespace other { Reader nh; }", "gps/gps.cpp": source}, 1)
     assert not unsure.parameters
+
+
+def test_a_helper_of_another_package_that_is_given_the_node_handle():
+    source = """
+        #include <ros/ros.h>
+        #include <rig_common/params.h>
+        int main(int c, char** v) {
+          ros::init(c, v, "rig");
+          ros::NodeHandle nh("~"), arm(nh, "arm");
+          double speed = getParam(nh, "speed", 1.5);
+          double reach = getParam(arm, "reach", 0.5);
+          double other = getParam(c, "other", 0.5);
+          double own = param(nh, "own");
+        }
+    """
+    helper = "double param(ros::NodeHandle& nh, const std::string& name) { return nh.param(name + '_x', 1.0); }"
+    found = graph({"rig/rig.cpp": '#include "own.h"' + source, "rig/own.h": helper.replace("'", '"')}, 1)
+    assert {(one.name, one.default, one.line) for one in found.parameters if one.path == "rig/rig.cpp"} == {
+        ("speed", "1.5", 7), ("reach", "0.5", 8)
+    }  # fmt: skip
+    assert [(one.name, one.path) for one in found.parameters if one.path != "rig/rig.cpp"] == [("own_x", "rig/own.h")]
