@@ -654,7 +654,13 @@ class Join:
 
     @cached_property
     def _uses_of_parameters(self) -> list[FrameworkCall]:
-        return [use for use in self.calls.select_uses("parameter") if not self.sites.wraps(use.fn, "parameter")]
+        uses = self.calls.select_uses("parameter")
+        return [use for use in uses if not self.sites.wraps(use.fn, "parameter") or not self._is_asked_by_callers(use)]
+
+    def _is_asked_by_callers(self, use: FrameworkCall) -> bool:
+        """Whether what a function called like the framework's reads is what its callers name: for one without a class,
+        where it hands on the name it is given beside a node handle."""
+        return bool(use.fn.facts.owner) or self.calls.hands_on_name(use.fn)
 
     def find_library(self, fn: Fn) -> Node | None:
         """The library that a function belongs to, as a node; None outside of packages."""

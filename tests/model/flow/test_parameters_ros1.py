@@ -134,6 +134,9 @@ def test_a_helper_of_another_package_that_is_given_the_node_handle():
         }
     """
     helper = "double param(ros::NodeHandle& nh, const std::string& name) { return nh.param(name + '_x', 1.0); }"
+    same = helper.replace(" + '_x'", "").replace("double param", "double getParam")
+    found = graph({"rig/rig.cpp": source, "rig/same.h": same}, 1)
+    assert {(one.name, one.path) for one in found.parameters} >= {("speed", "rig/rig.cpp"), ("reach", "rig/rig.cpp")}
     found = graph({"rig/rig.cpp": '#include "own.h"' + source, "rig/own.h": helper.replace("'", '"')}, 1)
     assert {(one.name, one.default, one.line) for one in found.parameters if one.path == "rig/rig.cpp"} == {
         ("speed", "1.5", 7), ("reach", "0.5", 8)
