@@ -77,9 +77,9 @@ class Calls:
         described = [each for each in known if each.language in ("", fn.source.facts.language)]
         for row in self._list_declared_rows(rows, fn, call):
             name = row.parts[0] if row.kind == "list" and row.parts else row
-            whole = FlowExpr("text", f"{head[0].text}{name.text}") if head and name.kind == namespace.kind == "text" else (
-                FlowExpr("join", "", (*head, name)) if head else name
-            )
+            whole = FlowExpr("join", "", (*head, name)) if head else name
+            if head and name.kind == namespace.kind == "text":
+                whole = FlowExpr("text", f"{head[0].text}{name.text}")
             one = structs.replace(call, arguments=(whole, *row.parts[1:3]))
             yield from (FrameworkCall(fn, each, one) for each in described[:1])
 

@@ -51,7 +51,8 @@ def list_unknown_names(graph: Graph, **asked: Any) -> list[str]:
     lost = [
         (one.path, one.line, f"{one.what}{f' `{one.written}`' * bool(one.written)}: {one.reason}")
         for one in graph.coverage.unresolved
-        if not one.what.startswith(("started ", LOST_INCLUDE)) and one.what != COPIED and not one.what.endswith(" callback")
+        if not one.what.startswith(("started ", LOST_INCLUDE)) and not one.what.endswith(" callback")
+        if one.what != COPIED
         if not selected.asked or one.path in paths
     ]
     lost += [

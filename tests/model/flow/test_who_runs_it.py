@@ -595,7 +595,7 @@ def test_what_a_started_program_is_built_of_is_its_own_where_nothing_is_seen_to_
               return true;
             }
         """,
-        "car/other.cpp": "int main(int c, char** v) { rclcpp::init(c, v); rclcpp::Node node(\"other\"); }",
+        "car/other.cpp": 'int main(int c, char** v) { rclcpp::init(c, v); rclcpp::Node node("other"); }',
         "car/launch/all.launch.py": """
             from launch import LaunchDescription
             from launch_ros.actions import Node
