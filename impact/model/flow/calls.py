@@ -140,7 +140,7 @@ class Calls:
                 continue
             if row.does == "parameter" and row.first == "node":
                 targets = self.code.list_targets(call.callee, fn)
-                if not all(map(self.hands_on_name, targets)):
+                if not all(map(self.is_name_handed_on, targets)):
                     continue  # a helper of the code's own, which is followed
             if row.free or row.on:
                 if free is not None and (free in row.free and (free or not receiver)):
@@ -164,7 +164,7 @@ class Calls:
             return FrameworkCall(fn, row, call)
         return weak
 
-    def hands_on_name(self, fn: Fn) -> bool:
+    def is_name_handed_on(self, fn: Fn) -> bool:
         """Whether a function asks for a parameter by the name that its second argument is, and no other."""
         name = fn.facts.parameters[1].name if len(fn.facts.parameters) > 1 else ""
         asked = [

@@ -4,11 +4,11 @@ and of what is looked up by a place or a key."""
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from ...facts.flow import Assignment, FlowExpr
-from .code import FlowCode, Fn, Variable, find_parameter, get_tail, is_number
+from ...facts.flow import Assignment, FlowCall, FlowExpr
+from .code import FlowCode, Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number
 
 _DEEPEST = 8
 _MOST = 200
@@ -33,7 +33,7 @@ _MEMBERS = {"first": 0, "second": 1}
 _COUNTS = re.compile(r"(\w+) (<=?) (\d{1,4})")
 
 
-class Element(NamedTuple):
+class ListElement(NamedTuple):
     """An expression where it stands."""
 
     value: FlowExpr
@@ -41,32 +41,36 @@ class Element(NamedTuple):
     line: int
 
 
-class Held(NamedTuple):
+class HeldList(NamedTuple):
     """What a list or dictionary is written to hold. whole: whether it is that alone, in this order."""
 
-    elements: tuple[Element, ...]
+    elements: tuple[ListElement, ...]
     whole: bool = True
 
 
 class Elements:
-    """The elements of the lists and dictionaries of a body of code."""
+    """The elements of the lists and dictionaries of a body of code. runs: which functions run; way: the only call
+    through which a function is reached; made: by constructor who gives it its arguments, where that is told."""
 
-    def __init__(self, code: FlowCode):
-        self.code = code
+    def __init__(
+        self, code: FlowCode, runs: Callable[[Fn], bool] = lambda fn: True, way: Mapping[Fn, FlowCall] | None = None,
+        made: Mapping[Fn, Sequence[Made]] | None = None,
+    ):  # fmt: skip
+        self.code, self._runs, self._way, self._made = code, runs, way or {}, made or {}
         self._left = 0
 
-    def list_walked(self, container: FlowExpr, fn: Fn, line: int) -> list[Element] | None:
+    def list_walked(self, container: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
         """What a loop over a list or dictionary goes through: a pair for each key of a dictionary. None where that is
         not written out."""
         held = self._find_held(container, fn, line)
         return _join_held(held) if held else None
 
-    def select(self, container: FlowExpr, key: FlowExpr, fn: Fn, line: int) -> list[Element] | None:
+    def select(self, container: FlowExpr, key: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
         """What stands at a place, or at a key, that is a literal. None where that is not written out."""
         held = self._find_held(container, fn, line)
         if not held or not all(one.whole for one in held):
             return None
-        found: list[Element] = []
+        found: list[ListElement] = []
         for one in held:
             chosen = _select_one(one, key)
             if chosen is None:
@@ -74,7 +78,7 @@ class Elements:
             found.append(chosen)
         return found
 
-    def list_counted(self, path: str, fn: Fn, line: int) -> list[Element]:
+    def list_counted(self, path: str, fn: Fn, line: int) -> list[ListElement]:
         """The numbers that a variable of a loop `for (int i = 0; i < 4; ++i)` is in its turns; none for all else."""
         around = {place for guard in fn.collect_guards(line) for place in fn.list_guards_around(guard)}
         for each in fn.assigned.get(path, ()) if fn.source.facts.language == "cpp" else ():
@@ -90,7 +94,7 @@ class Elements:
                     return _list_numbers(range(int(each.value.text), last), fn, line) if len(same) == 1 else []
         return []
 
-    def find_pair(self, path: str, fn: Fn, line: int) -> list[Element] | None:
+    def find_pair(self, path: str, fn: Fn, line: int) -> list[ListElement] | None:
         """What `entry.first` and `entry.second` are, where a loop walks through pairs. None for all else."""
         head, _, last = path.rpartition(".")
         place = _MEMBERS.get(last)
@@ -101,17 +105,17 @@ class Elements:
             return None
         return [one.elements[place] for one in held]
 
-    def _find_held(self, value: FlowExpr, fn: Fn, line: int) -> list[Held] | None:
+    def _find_held(self, value: FlowExpr, fn: Fn, line: int) -> list[HeldList] | None:
         self._left = _MOST_STEPS
         return self._list_held(value, fn, line, 0)
 
-    def _list_held(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[Held] | None:
+    def _list_held(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[HeldList] | None:
         """The lists that an expression may be, None where one of them is not written out."""
         self._left -= 1
         if depth > _DEEPEST or self._left < 0:
             return None
         if value.kind == "list":
-            return [Held(tuple(Element(part, fn, line) for part in value.parts))]
+            return [HeldList(tuple(ListElement(part, fn, line) for part in value.parts))]
         if value.kind == "make":
             return self._list_made(value, fn, line, depth)
         if value.kind == "name":
@@ -124,10 +128,10 @@ class Elements:
             return self._list_joined(value, fn, line, depth)
         if value.kind == "other" and len(value.parts) == 1 and value.text[:1] in ("[", "("):
             # `[... for each in ...]`
-            return [Held((Element(value.parts[0], fn, line),), False)]
+            return [HeldList((ListElement(value.parts[0], fn, line),), False)]
         return None
 
-    def _list_made(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[Held] | None:
+    def _list_made(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[HeldList] | None:
         name = get_tail(value.text.partition("<")[0])
         if fn.source.facts.language != "cpp" or name not in _LISTS | _MAPS:
             return None
@@ -136,9 +140,9 @@ class Elements:
         # `std::vector<std::string>(3, "x")` holds no list of these.
         if not value.parts or any(part.kind not in ("text", "list") for part in value.parts):
             return None
-        return [Held(tuple(Element(part, fn, line) for part in value.parts))]
+        return [HeldList(tuple(ListElement(part, fn, line) for part in value.parts))]
 
-    def _list_inner(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[Held] | None:
+    def _list_inner(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[HeldList] | None:
         """The lists that are elements of a list."""
         container, key = value.parts
         held = self._list_held(container, fn, line, depth + 1)
@@ -153,8 +157,8 @@ class Elements:
                 return None
         return self._join_lists(inner, depth)
 
-    def _join_lists(self, elements: Iterable[Element], depth: int) -> list[Held] | None:
-        found: list[Held] = []
+    def _join_lists(self, elements: Iterable[ListElement], depth: int) -> list[HeldList] | None:
+        found: list[HeldList] = []
         for one in elements:
             lists = self._list_held(one.value, one.fn, one.line, depth + 1)
             if lists is None or len(found) > _MOST:
@@ -162,7 +166,7 @@ class Elements:
             found += lists
         return found
 
-    def _list_called(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[Held] | None:
+    def _list_called(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[HeldList] | None:
         head, _, last = value.text.rpartition(".")
         python = fn.source.facts.language == "python"
         if python and head and not value.parts and last in ("items", "copy", *_OF_DICTIONARIES):
@@ -178,22 +182,25 @@ class Elements:
             return self._list_held(returned[0][0].value, returned[0][1], returned[0][0].line, depth + 1)
         return None
 
-    def _list_joined(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[Held] | None:
+    def _list_joined(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[HeldList] | None:
         """`[...] + [...]`."""
         parts = [self._list_held(part, fn, line, depth + 1) for part in value.parts]
         known = [part[0] for part in parts if part is not None and len(part) == 1]
         if len(known) < len(parts):
             return None
-        return [Held(tuple(one for part in known for one in part.elements), all(part.whole for part in known))]
+        return [HeldList(tuple(one for part in known for one in part.elements), all(part.whole for part in known))]
 
-    def _list_named(self, path: str, fn: Fn, line: int, depth: int) -> list[Held] | None:
+    def _list_named(self, path: str, fn: Fn, line: int, depth: int) -> list[HeldList] | None:
         variable = self.code.identify(path, fn)
-        found: list[Held] = []
-        further: list[Element] = []
+        found: list[HeldList] = []
+        further: list[ListElement] = []
         written = self.code.list_writes(variable)
+        if variable.kind == "member":
+            # What another program writes into its own object, unless nothing that runs writes it.
+            written = [row for row in written if self._runs(row[0])] or written
         for writer, each in _select_reaching(written, variable, fn, line):
             if each.key is not None:
-                further.append(Element(FlowExpr("list", "", (each.key, each.value)), writer, each.line))
+                further.append(ListElement(FlowExpr("list", "", (each.key, each.value)), writer, each.line))
                 continue
             if each.operator not in ("=", "for") or "[" in each.target:
                 return None
@@ -215,38 +222,50 @@ class Elements:
             found += inner
         return self._add_put(found, further, path, fn)
 
-    def _add_put(self, found: list[Held], further: list[Element], path: str, fn: Fn) -> list[Held] | None:
+    def _add_put(self, found: list[HeldList], further: list[ListElement], path: str, fn: Fn) -> list[HeldList] | None:
         """Lists with what is put into them afterwards; None where that is not followed."""
         for call in fn.facts.calls:
             head, _, last = call.callee.rpartition(".")
             if head == path and last in _PUT and len(call.arguments) == 1:
-                further.append(Element(call.arguments[0], fn, call.line))
+                further.append(ListElement(call.arguments[0], fn, call.line))
             elif head == path and last in _CHANGES:
                 return None
         if not further:
             return found
         held = [one for one in found if one.elements]
-        return [*held, Held(tuple(further), False)] if len(held) < 2 else None
+        return [*held, HeldList(tuple(further), False)] if len(held) < 2 else None
 
-    def _list_first(self, variable: Variable, fn: Fn) -> Iterator[Element]:
+    def _list_first(self, variable: Variable, fn: Fn) -> Iterator[ListElement]:
         """What a member or a constant is declared with."""
         if variable.kind == "member":
             for cls in self.code.list_class_bodies(variable.owner):
                 holder = next(iter(self.code.list_functions(cls)), fn)
                 for member in cls.facts.members:
                     if member.name == variable.name and member.value is not None:
-                        yield Element(member.value, holder, member.line)
+                        yield ListElement(member.value, holder, member.line)
         elif variable.kind == "global":
             for constant, source in self.code.list_constants(variable, fn):
                 if constant.value is not None:
-                    yield Element(constant.value, self.code.find_first(source, fn), constant.line)
+                    yield ListElement(constant.value, self.code.find_first(source, fn), constant.line)
 
-    def _list_given(self, variable: Variable, fn: Fn) -> Iterator[Element]:
-        """What callers give for a parameter of a function."""
+    def _list_given(self, variable: Variable, fn: Fn) -> Iterator[ListElement]:
+        """What callers that run give for a parameter of a function, and its default where one of them gives nothing."""
         place = find_parameter(fn, variable.name) if variable.kind == "local" else None
-        if place is not None:
-            for value, giver in self.code.list_given(fn, place[0], variable.name):
-                yield Element(value, giver, giver.facts.line)
+        if place is None:
+            return
+        only = self._way.get(fn)
+        called = (
+            (caller, call.arguments, call.line)
+            for caller, call in self.code.callers.get(fn, ())
+            if only is None or call is only
+        )
+        default = self.code.find_default(fn, *place)
+        for giver, arguments, line in self._made.get(fn) or (*called, *self.code.list_constructed(fn)):
+            given = find_argument(arguments, place[0], variable.name) if self._runs(giver) else None
+            if given is not None:
+                yield ListElement(given, giver, line)
+            elif default is not None and self._runs(giver):
+                yield ListElement(default, fn, fn.facts.line)
 
 
 def _select_reaching(
@@ -265,22 +284,22 @@ def _select_reaching(
     return [(fn, each) for each in before if each.line >= max(sure, default=0)]
 
 
-def _join_held(held: Iterable[Held]) -> list[Element]:
+def _join_held(held: Iterable[HeldList]) -> list[ListElement]:
     return list(dict.fromkeys(element for one in held for element in one.elements))
 
 
-def _select_column(held: Iterable[Held], place: int) -> list[Held] | None:
+def _select_column(held: Iterable[HeldList], place: int) -> list[HeldList] | None:
     """Of dictionaries, as pairs, the keys or the values."""
-    found: list[Held] = []
+    found: list[HeldList] = []
     for one in held:
         if any(element.value.kind != "list" or len(element.value.parts) != 2 for element in one.elements):
             return None
         column = (element._replace(value=element.value.parts[place]) for element in one.elements)
-        found.append(Held(tuple(column), one.whole))
+        found.append(HeldList(tuple(column), one.whole))
     return found
 
 
-def _select_one(held: Held, key: FlowExpr) -> Element | None:
+def _select_one(held: HeldList, key: FlowExpr) -> ListElement | None:
     """What stands at a literal place or key; None where that is not one thing."""
     pairs = [one for one in held.elements if one.value.kind == "list" and len(one.value.parts) == 2]
     if key.kind == "number" and is_number(key.text.removeprefix("-")):
@@ -296,14 +315,14 @@ def _select_one(held: Held, key: FlowExpr) -> Element | None:
     return None
 
 
-def _make_range(value: FlowExpr, fn: Fn, line: int) -> list[Held] | None:
+def _make_range(value: FlowExpr, fn: Fn, line: int) -> list[HeldList] | None:
     """The numbers that `range` counts, where its limits are written."""
     if not 0 < len(value.parts) < 3 or any(part.kind != "number" or not is_number(part.text) for part in value.parts):
         return None
     found = _list_numbers(range(*(int(part.text) for part in value.parts)), fn, line)
-    return [Held(tuple(found))] if found else None
+    return [HeldList(tuple(found))] if found else None
 
 
-def _list_numbers(numbers: range, fn: Fn, line: int) -> list[Element]:
+def _list_numbers(numbers: range, fn: Fn, line: int) -> list[ListElement]:
     """Numbers as they would be written; none where they are many."""
-    return [Element(FlowExpr("number", str(each)), fn, line) for each in numbers if len(numbers) <= _MOST]
+    return [ListElement(FlowExpr("number", str(each)), fn, line) for each in numbers if len(numbers) <= _MOST]

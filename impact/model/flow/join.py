@@ -661,7 +661,7 @@ class Join:
     def _is_asked_by_callers(self, use: FrameworkCall) -> bool:
         """Whether what a function called like the framework's reads is what its callers name: for one without a class,
         where it hands on the name it is given beside a node handle."""
-        return bool(use.fn.facts.owner) or self.calls.hands_on_name(use.fn)
+        return bool(use.fn.facts.owner) or self.calls.is_name_handed_on(use.fn)
 
     def find_library(self, fn: Fn) -> Node | None:
         """The library that a function belongs to, as a node; None outside of packages."""

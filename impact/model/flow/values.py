@@ -16,7 +16,7 @@ from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number
 from .conditions import ConditionReader, DecidedCondition, is_truth
-from .elements import Element, Elements
+from .elements import Elements, ListElement
 from .graph import How
 from .names import is_open, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
@@ -348,7 +348,7 @@ class FlowValues:
     @cached_property
     def elements(self) -> Elements:
         """What lists and dictionaries of the code hold."""
-        return Elements(self.code)
+        return Elements(self.code, self._runs, self.way, self.made)
 
     def _evaluate_chosen(
         self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
@@ -376,13 +376,13 @@ class FlowValues:
 
     def _select_at_each(
         self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
-    ) -> list[Element]:  # fmt: skip
+    ) -> list[ListElement]:  # fmt: skip
         """What a dictionary has at each key that an expression may be worth; nothing where one of these is not known,
         or it has no such key."""
         if index.kind != "name" or self._is_in(("key", index.text), seen):
             return []
         keys = list(self._evaluate(index, fn, line, (*seen, ("key", index.text))))
-        found: list[Element] = []
+        found: list[ListElement] = []
         for key in keys:
             chosen = key.text is not None and self.elements.select(container, FlowExpr("text", key.text), fn, line)
             if not chosen:
