@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from ...facts.flow import Assignment, FlowCall, FlowExpr
 from .code import FlowCode, Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number
+from .reaching import LOOPS
 
 _DEEPEST = 8
 _MOST = 200
@@ -81,6 +82,9 @@ class Elements:
     def list_counted(self, path: str, fn: Fn, line: int) -> list[ListElement]:
         """The numbers that a variable of a loop `for (int i = 0; i < 4; ++i)` is in its turns; none for all else."""
         around = {place for guard in fn.collect_guards(line) for place in fn.list_guards_around(guard)}
+        asked = (fn.facts.guards[place] for place in around if fn.facts.guards[place].kind not in LOOPS)
+        if any(path in re.findall(r"\w+", guard.text) for guard in asked):
+            return []  # not in all turns
         for each in fn.assigned.get(path, ()) if fn.source.facts.language == "cpp" else ():
             if each.operator != "=" or each.value.kind != "number" or not is_number(each.value.text):
                 continue

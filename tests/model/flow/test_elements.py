@@ -71,6 +71,7 @@ PARAMETERS_IN_CPP = [
     ('for (int i = 1; i <= 2; i++) declare_parameter("motor" + std::to_string(i), 0);', {"motor1", "motor2"}),
     ('for (int i = 0; i < count_; ++i) declare_parameter("motor" + std::to_string(i), 0);', set()),
     ('for (int i = 0; i < 4; i += 2) declare_parameter("motor" + std::to_string(i), 0);', set()),
+    ('for (int i = 0; i < 3; ++i) { if (i > 0) declare_parameter("motor" + std::to_string(i), 0); }', set()),
     ('double d = 0.5; declare_parameter("motor" + std::to_string(d), 0);', set()),
     ('std::vector<std::string> names(2, "a"); for (auto name : names) declare_parameter(name, 0);', set()),
 ]  # fmt: skip
