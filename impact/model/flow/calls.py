@@ -171,7 +171,7 @@ class Calls:
             call.arguments[0].text
             for call in fn.facts.calls
             if call.arguments
-            and any(row.does == "parameter" and row.on for row in self.table.calls.get(get_tail(call.callee), ()))
+            and any(row.does == "parameter" for row in self.table.calls.get(get_tail(call.callee), ()))
         ]
         return bool(name) and bool(asked) and set(asked) == {name}
 
