@@ -161,8 +161,8 @@ class Timer(msgspec.Struct, frozen=True):
 
 
 class ParameterUse(msgspec.Struct, frozen=True):
-    """A parameter that is declared or read. name: as the code gives it, in ROS 1 to the node handle; default: as
-    written, empty for none."""
+    """A parameter that is declared or read. name: as the code gives it, in ROS 1 to the node handle, with brackets for
+    what is not known of it (`<plugin_name>.speed`); default: as written, empty for none."""
 
     node: str
     name: str

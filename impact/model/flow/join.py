@@ -143,6 +143,11 @@ class Join:
         return list(self._running)
 
     @cached_property
+    def reached(self) -> frozenset[Fn]:
+        """The functions that a program is seen to reach."""
+        return frozenset(fn for one in self._running for fn in one.functions)
+
+    @cached_property
     def _running(self) -> list[Running]:
         found: list[Running] = []
         for program in programs_of.list_programs(self.code, self.built, self._find_kinds):
@@ -445,7 +450,7 @@ class Join:
             full = self.objects.join_namespace(use, full.lstrip("/"), running)
         language = "python" if program.kind == "script" else "cpp"
         node = Node(
-            f"{program.package}/{program.executable or program.plugin}", full, program.package, program.kind,
+            f"{program.package}/{program.executable or program.plugin}".lstrip("/"), full, program.package, program.kind,
             program.executable, program.plugin, language, program.path, program.line,
         )  # fmt: skip
         return node, use
@@ -627,6 +632,7 @@ class Join:
             for owner in owners.list_owners(timer.use):
                 if self._is_left_out(timer.use, owner):
                     continue
+                owners.use(owner)
                 node = _get_node(owner)
                 yield Timer(
                     node.id if node else "", timer.period, _make_callback(timer.callbacks), *_get_place(timer.use)
@@ -638,8 +644,9 @@ class Join:
             made = list(self._make_parameters(use, those))
             for owner in those if made else ():
                 owners.use(owner)
-            if those and not made:
-                reasons = [value.reason for value in self.list_parameter_names(use)]
+            values = self.list_parameter_names(use)
+            if those and not any(value.text for value in values):
+                reasons = [value.reason for value in values]
                 reason = reasons[0] if reasons else "no name is given"
                 written = unparse(self.calls.find_argument(use, use.row.topic))
                 count.unresolved.append(Unresolved("parameter name", reason, *_get_place(use), written))
@@ -823,10 +830,22 @@ class Join:
         default = unparse(self.calls.find_argument(use, use.row.default)) if use.row.default else ""
         kind = "declared" if use.row.declares else "read"
         nodes = {node.id if node else "": None for node in (_get_node(owner) for owner in owners)}
-        for value in values:
-            if value.text:
-                for node in nodes:
-                    yield ParameterUse(node, value.text, kind, *_get_place(use), default)
+        names = [value.text for value in values if value.text] or [self._spell_parameter_in_part(use)]
+        for name in filter(None, names):
+            for node in nodes:
+                yield ParameterUse(node, name, kind, *_get_place(use), default)
+
+    def _spell_parameter_in_part(self, use: FrameworkCall) -> str:
+        """The name of a parameter with brackets for what is not known of it; empty where none of it is known."""
+        written = self.calls.find_argument(use, use.row.topic)
+        if written is None or written.kind != "join" or written.text not in ("", "+"):
+            return ""
+        known = [(part, self.values.evaluate(part, use.fn, use.call.line)) for part in written.parts]
+        pieces = [found[0].text if len(found) == 1 else None for _, found in known]
+        if not any(piece and _WORD.search(piece) for piece in pieces):
+            return ""
+        spelled = (_spell_open(part) if piece is None else piece for (part, _), piece in zip(known, pieces, strict=True))
+        return "".join(spelled)
 
 
 class _Owners:
@@ -841,14 +860,14 @@ class _Owners:
         )
 
     def list_owners(self, use: FrameworkCall, through: Sequence[FrameworkCall] = ()) -> list[Owner]:
-        """Who runs a use: nodes that reach it, else those that are built from its file, else its library, or none.
-        through: as for Join.runs()."""
+        """Who runs a use: nodes that reach it, else, where no program is seen to reach it, those that are built from its
+        file, else its library, or none. through: as for Join.runs()."""
         found = self._by_function.get(use.fn, [])
-        if self.launched or found:
+        if found or (self.launched and use.fn in self.join.reached):
             return [one for one in found if self.join.runs(one, use, through)]
         here = (one for one in self.running if use.fn.source.path in one.program.files)
         built = [one for one in here if self.join.runs(one, use, through)]
-        if built:
+        if built or self.launched:
             return [*built]
         node = self.join.find_library(use.fn)
         return [self._libraries.setdefault(node.id, node) if node is not None else None]

@@ -14,8 +14,9 @@ from ...facts.flow import Assignment, FlowCall, FlowExpr, FlowParameter, Guard
 from ...facts.python.flow_expressions import LONGEST_OTHER
 from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
-from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail
+from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number
 from .conditions import ConditionReader, DecidedCondition, is_truth
+from .elements import Element, Elements
 from .graph import How
 from .names import is_open, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
@@ -54,6 +55,7 @@ _LEAST: tuple[How, ...] = ("default", "launch", "given", "literal")
 ASKING = frozenset(("if", "unless", "case"))
 _FLAG = re.compile(r"(!|not )?\s*\(?((?:self\.|this->|this\.)?[A-Za-z_]\w*)\)?")
 _WORD = re.compile(r"[A-Za-z_]\w*")
+_OF_PAIRS = frozenset(("first", "second"))
 _PUT = frozenset(("push_back", "emplace_back", "append"))
 # Functions that give a topic's type, and its name beside it.
 _TELLS_TOPIC = frozenset(("get_topic_class", "get_topic_type"))
@@ -338,8 +340,54 @@ class FlowValues:
                     yield FlowValue(None, "given", "one of several arguments of the command line")
         elif container.kind == "call" and get_tail(container.text) in _TELLS_TOPIC and container.parts:
             yield from self._evaluate(container.parts[0], fn, line, seen)
+        elif len(value.parts) == 2:
+            yield from self._evaluate_chosen(container, index, fn, line, seen)
         else:
             yield from self._evaluate_elements(container, fn, line, seen)
+
+    @cached_property
+    def elements(self) -> Elements:
+        """What lists and dictionaries of the code hold."""
+        return Elements(self.code)
+
+    def _evaluate_chosen(
+        self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
+    ) -> Iterator[FlowValue]:  # fmt: skip
+        """What stands at a place, at a key, or in each turn of a loop."""
+        if index.kind in ("number", "text"):
+            found = self.elements.select(container, index, fn, line)
+        elif index.kind == "other" and not index.text:
+            found = self.elements.list_walked(container, fn, line)
+            # A loop over a dictionary goes through its keys.
+            found = [one._replace(value=_get_key(one.value)) for one in found or ()]
+        else:
+            found = self._select_at_each(container, index, fn, line, seen)
+        if found:
+            for one in found:
+                yield from self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value)))
+        elif index.kind == "number":
+            one_of = list(self._evaluate_elements(container, fn, line, seen))
+            yield from one_of
+            if sum(one.text is not None for one in one_of) > 1:
+                yield FlowValue(None, "unresolved", f"which element of `{container.text or container.kind}` it is", True)
+        else:
+            yield from self._evaluate_elements(container, fn, line, seen)
+
+    def _select_at_each(
+        self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
+    ) -> list[Element]:  # fmt: skip
+        """What a dictionary has at each key that an expression may be worth; nothing where one of these is not known,
+        or it has no such key."""
+        if index.kind != "name" or self._is_in(("key", index.text), seen):
+            return []
+        keys = list(self._evaluate(index, fn, line, (*seen, ("key", index.text))))
+        found: list[Element] = []
+        for key in keys:
+            chosen = key.text is not None and self.elements.select(container, FlowExpr("text", key.text), fn, line)
+            if not chosen:
+                return []
+            found += chosen
+        return found
 
     def _list_following(self, index: FlowExpr, fn: Fn, line: int) -> list[str] | None:
         return self.command_line.list_following(index, fn, _find_guard(fn, line), self.arguments or ())
@@ -361,10 +409,11 @@ class FlowValues:
             return
         if value.kind == "name":
             variable = self.code.identify(value.text, fn)
-            for writer, each in self.code.list_writes(variable):
-                if each.value.kind == "list":
-                    yield from self._evaluate_elements(each.value, writer, each.line, (*seen, variable))
-                    return
+            lists = [row for row in self.code.list_writes(variable) if row[1].value.kind == "list"]
+            for writer, each in lists:
+                yield from self._evaluate_elements(each.value, writer, each.line, (*seen, variable))
+            if lists:
+                return
             puts = {f"{value.text}.{put}" for put in _PUT}
             pushed = [call for call in fn.facts.calls if call.callee in puts]
             if pushed and not self._is_in(variable, seen):
@@ -381,6 +430,12 @@ class FlowValues:
             return
         if path.endswith("()"):
             yield from self._evaluate_inner(path.removesuffix("()"), fn, line, seen)
+            return
+        known = self.elements.find_pair(path, fn, line) if parts[-1] in _OF_PAIRS and "." in path else None
+        known = known or (self.elements.list_counted(path, fn, line) if path in fn.locals else None)
+        if known:
+            for one in known:
+                yield from self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value)))
             return
         variable = self.code.identify(path, fn)
         if self._is_in(variable, seen):
@@ -723,7 +778,9 @@ class FlowValues:
         elif each.operator == "for":
             yield from self._evaluate_elements(each.value, writer, each.line, seen)
         elif each.operator == "+=":
-            yield FlowValue(None, "unresolved", f"`{each.target}` is put together in steps")
+            # What is counted has other values beside the first.
+            counted = each.value.kind == "number"
+            yield FlowValue(None, "unresolved", f"`{each.target}` is put together in steps", counted)
 
     def _runs_over_all(self, fn: Fn, line: int) -> bool:
         """Whether a loop does what stands on a line in every turn, not only for options that it recognises."""
@@ -832,6 +889,21 @@ class FlowValues:
                 yield from self._evaluate_inner(head.removesuffix("()"), fn, line, seen)
             else:
                 yield from self._evaluate_name(head, fn, line, seen)
+            return
+        if head and last in ("get", "at") and value.parts and value.receiver is None:
+            chosen = self.elements.select(FlowExpr("name", head), value.parts[0], fn, line)
+            if chosen:
+                for one in chosen:
+                    yield from self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value)))
+                return
+        if last == "to_string" and len(value.parts) == 1:
+            found = list(self._evaluate(value.parts[0], fn, line, seen))
+            # Of what is no whole number, it is not the same text.
+            if found and all(one.text is not None and is_number(one.text) for one in found):
+                yield from found
+            else:
+                reasons = [one.reason for one in found if one.text is None]
+                yield FlowValue(None, "unresolved", (reasons or ["a number as a text is not followed"])[0])
             return
         # Options of ROS 1 are named by the name they are for.
         if (last in _OF_FIRST or (last.startswith("create") and "Options::" in value.text)) and value.parts:
@@ -1012,6 +1084,11 @@ def _mark_unknown(values: Iterable[FlowValue]) -> list[FlowValue]:
     """What is assigned, as what may hold in place of others where nothing of it is known."""
     found = list(values)
     return found if any(one.text is not None for one in found) else [one.mark() for one in found]
+
+
+def _get_key(value: FlowExpr) -> FlowExpr:
+    """Of a pair, as a dictionary has it for each key, the key; all else as it is."""
+    return value.parts[0] if value.kind == "list" and len(value.parts) == 2 else value
 
 
 def _mentions(value: FlowExpr, path: str) -> bool:

@@ -18,7 +18,7 @@ from ..package import Watched
 from ..workspace import Package, Workspace, link
 from .callers import Callers, build_callers
 from .defined import DefinedInterfaces
-from .file_selection import BUILD, compute_code_key, is_code, make_code_selector
+from .file_selection import BUILD, compute_code_key, is_code, list_run_by_hand, make_code_selector
 from .graph import Graph
 from .join import Join
 from .launches import Launch
@@ -119,9 +119,10 @@ def get_facts(workspace: Workspace) -> ExtractedFacts:
 
 
 def list_code(workspace: Workspace) -> dict[str, str]:
-    """The code of the packages, by path the package it belongs to; tests are left out."""
+    """The code of the packages, by path the package it belongs to, and programs outside of all packages, with an empty
+    name; tests are left out."""
     extraction = get_facts(workspace)
-    found: dict[str, str] = {}
+    found = dict.fromkeys(list_run_by_hand(extraction.kinds, workspace.extraction.kinds), "")
     for package in workspace:
         start = len(package.path) + 1 if package.path else 0
         for path in package.linked.files:
@@ -159,6 +160,9 @@ def list_built(workspace: Workspace, files: Mapping[str, FlowFile]) -> Iterator[
         }
         scripts, plugins = _find_scripts(package, files), _collect_plugins(package)
         yield BuiltPackage(package.name, executables, libraries, components, scripts, links, plugins)
+    loose = [path for path, owner in list_code(workspace).items() if not owner and path in files and _runs(files[path])]
+    if loose:
+        yield BuiltPackage("", {}, {}, {}, {path: path for path in loose}, {})
 
 
 def _collect_plugins(package: Package) -> dict[str, str]:
