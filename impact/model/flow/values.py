@@ -117,6 +117,8 @@ class FlowValues:
         self.node, self.made = node, made or {}
         # The namespace of the node handle that a use is called on, and what is known of that, by the call.
         self.find_prefix: Callable[[FrameworkCall], str] = lambda use: ""
+        # The value of a message's constant by its path, where it is a string.
+        self.find_message_text: Callable[[str, Fn], str | None] = lambda path, fn: None
         self._prefixes: dict[int, str] = {}
         self._left = _MOST_STEPS
         self._budget = [_STEPS_IN_ALL + _STEPS_A_FUNCTION * len(self.code.functions)]
@@ -163,6 +165,7 @@ class FlowValues:
         other._budget, other.asked, other._decided = self._budget, self.asked, self._decided
         other._known, other._works = self._known, self._works
         other.find_prefix, other._prefixes = self.find_prefix, self._prefixes
+        other.find_message_text = self.find_message_text
         return other
 
     def evaluate(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
@@ -452,8 +455,11 @@ class FlowValues:
             yield from self._evaluate(last.value, fn, last.line, (*seen, variable))
             return
         found = list(self.evaluate_variable(variable, fn, (*seen, variable), self._find_origins(path, fn), at, line))
+        told = None if found else self.find_message_text(path, fn)
         if found:
             yield from found
+        elif told is not None:
+            yield FlowValue(told)
         else:
             how = "given" if "." in path and self.command_line.is_parsed(path, fn) else "unresolved"
             yield FlowValue(None, how, f"nothing tells what `{path}` is")
@@ -831,7 +837,12 @@ class FlowValues:
             cls, _, member = name.replace(".", "::").rpartition("::")
             found_class = self.code.find_class(cls, fn.source, fn.scope)
             if found_class is not None:
-                yield from self.evaluate_variable(Variable("member", found_class.key, member), fn, seen)
+                variable = Variable("member", found_class.key, member)
+                defined = self.code.list_definitions(f"{found_class.name}::{member}")
+                for constant, source in defined if len({one.value for one, _ in defined}) == 1 else ():
+                    yield from self._evaluate(constant.value, self.code.find_first(source, fn), constant.line, seen)
+                    return
+                yield from self.evaluate_variable(variable, fn, seen)
 
     def _evaluate_passed(self, fn: Fn, place: int, parameter: FlowParameter, seen: tuple) -> Iterator[FlowValue]:
         """What callers pass for a parameter, and its default where one of them, or nobody that is known, passes it."""
@@ -850,7 +861,7 @@ class FlowValues:
             yield from self._evaluate(default, fn, fn.facts.line, seen)
         elif not given:
             reason = f"an argument of `{fn.name or 'the module'}`, which nothing here calls"
-            yield FlowValue(None, "given", reason, uncalled=self.code.is_idle(fn))
+            yield FlowValue(None, "given", reason, uncalled=self.code.is_idle(fn), unpassed=True)
 
     def _find_given(self, value: FlowExpr, fn: Fn) -> tuple[int, FlowParameter] | None:
         """The parameter of a constructor that a value is, None for all else."""

@@ -213,7 +213,7 @@ def join_code(workspace: Workspace) -> Join:
     files: dict[str, FlowFile] = {path: file for path, file in facts.items() if file is not None}
     from .started import InWorkspace  # needs all that follows launch files
 
-    defined = DefinedInterfaces(workspace.interface_names, workspace.ros)
+    defined = DefinedInterfaces(workspace.interface_names, workspace.ros, workspace.interface_texts)
     find_file = InWorkspace(workspace).find_workspace_path
     built = list_built(workspace, files)
     uncompiled = find_uncompiled(workspace, files)
