@@ -6,8 +6,8 @@ sources judged it benchmarks/systems/NAME.drawn.jsonl. A record is a fact, never
                is from), certain; verdict: `right`, `wrong name`, `wrong node`, `wrong type`, `none` (nothing such is
                there), `open` (the sources do not tell); why: one clause
     site       a place in C++ or Python code that a search of the text takes for an API call: repo, path, line, role;
-               found: the graph has an endpoint, parameter or timer there, or names the place as not resolved, or its file as one
-               that nothing compiles (`named`);
+               found: the graph has an endpoint, parameter or timer there, or names the place as not resolved, or leaves
+               out its file or package and says so (`named`);
                verdict, of those that are not found: `call` or `none` (the text is no such call)
 
 usage: flow_sight.py draw --set NAME --clones FOLDER [--number 20] [--seed 18]
@@ -15,8 +15,7 @@ usage: flow_sight.py draw --set NAME --clones FOLDER [--number 20] [--seed 18]
        flow_sight.py recheck --set NAME --clones FOLDER
 
 `draw` writes the records without verdicts; `score` prints the figures of those that have one; `recheck` prints which
-endpoints that were judged right the graph of today still has, and which wrong ones it still states; and which sites it
-has.
+endpoints that were judged right the graph of today still has, which wrong ones it still states, and which sites it has.
 """
 
 from __future__ import annotations
@@ -102,15 +101,16 @@ class SeenPlaces:
         for listed, role in ROLES.items():
             self._have[role].update((one["path"], one["line"]) for one in found[listed])
         self._named = {(one["path"], one["line"]) for one in found["coverage"]["unresolved"]}
-        self._left_out = frozenset(found["coverage"]["uncompiled"])
+        copies = (one["path"] for one in found["coverage"]["unresolved"] if one["what"] == "package")
+        self._left_out = *found["coverage"]["uncompiled"], *(f"{path.rpartition('/')[0]}/" for path in copies)
 
     def has(self, role: str, path: str, line: int) -> bool:
         """Whether it has something of a role there."""
         return not self._have[role].isdisjoint(_list_near(path, line))
 
     def names(self, path: str, line: int) -> bool:
-        """Whether it says that it does not understand the place, or leaves the file out."""
-        return path in self._left_out or not self._named.isdisjoint(_list_near(path, line))
+        """Whether it says that it does not understand the place, or leaves out the file, or its package."""
+        return path.startswith(self._left_out) or not self._named.isdisjoint(_list_near(path, line))
 
 
 def _list_near(path: str, line: int) -> set[tuple[str, int]]:

@@ -77,9 +77,9 @@ class Calls:
         described = [each for each in known if each.language in ("", fn.source.facts.language)]
         for row in self._list_declared_rows(rows, fn, call):
             name = row.parts[0] if row.kind == "list" and row.parts else row
-            whole = FlowExpr("text", f"{head[0].text}{name.text}") if head and name.kind == namespace.kind == "text" else (
-                FlowExpr("join", "", (*head, name)) if head else name
-            )
+            whole = FlowExpr("join", "", (*head, name)) if head else name
+            if head and name.kind == namespace.kind == "text":
+                whole = FlowExpr("text", f"{head[0].text}{name.text}")
             one = structs.replace(call, arguments=(whole, *row.parts[1:3]))
             yield from (FrameworkCall(fn, each, one) for each in described[:1])
 
@@ -138,6 +138,10 @@ class Calls:
                 continue
             if row.first and not self._fits_first(row.first, fn, call):
                 continue
+            if row.does == "parameter" and row.first == "node":
+                targets = self.code.list_targets(call.callee, fn)
+                if not all(map(self.hands_on_name, targets)):
+                    continue  # a helper of the code's own, which is followed
             if row.free or row.on:
                 if free is not None and (free in row.free and (free or not receiver)):
                     return FrameworkCall(fn, row, call)
@@ -159,6 +163,17 @@ class Calls:
                 continue  # a function of the code's own that has the same name
             return FrameworkCall(fn, row, call)
         return weak
+
+    def hands_on_name(self, fn: Fn) -> bool:
+        """Whether a function asks for a parameter by the name that its second argument is, and no other."""
+        name = fn.facts.parameters[1].name if len(fn.facts.parameters) > 1 else ""
+        asked = [
+            call.arguments[0].text
+            for call in fn.facts.calls
+            if call.arguments
+            and any(row.does == "parameter" and row.on for row in self.table.calls.get(get_tail(call.callee), ()))
+        ]
+        return bool(name) and bool(asked) and set(asked) == {name}
 
     def _resolve_receiver(self, fn: Fn, call: FlowCall) -> tuple[str, frozenset[str], str | None]:
         """The receiver as written, its kinds, and the scope of a function that has no receiver."""

@@ -678,9 +678,13 @@ class FlowCode:
         else:
             own = self._by_path.get(variable.owner, fn.source)
             for source in (own, *self._list_declaring_headers(variable, own)):
-                for constant in source.facts.constants:
-                    if constant.name == variable.name and constant.type:
-                        return constant.type, source, ""
+                rows = [constant for constant in source.facts.constants if constant.type]
+                named = [constant for constant in rows if constant.name == variable.name]
+                # In a namespace around, or one that is used: where all of that name are of one type.
+                same = [constant for constant in rows if get_tail(constant.name) == get_tail(variable.name)]
+                if named or len({constant.type for constant in same}) == 1:
+                    first = (named or same)[0]
+                    return first.type, source, get_outer(first.name)
         return "", fn.source, fn.scope
 
     def _list_declaring_headers(self, variable: Variable, source: CodeFile) -> list[CodeFile]:

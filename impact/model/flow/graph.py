@@ -176,6 +176,10 @@ LOST_INCLUDE = "included launch file"
 """What an include is, as Unresolved has it, that is not followed."""
 
 
+COPIED = "package"
+"""What a package is, as Unresolved has it, that is left out since another one has its name."""
+
+
 class Unresolved(msgspec.Struct, frozen=True):
     """A call that was not resolved. what: `publisher topic`, `subscriber callback`, `publish`, ...; reason: why."""
 

@@ -449,9 +449,10 @@ class Join:
         if use is not None and full:
             full = self.objects.join_namespace(use, full.lstrip("/"), running)
         language = "python" if program.kind == "script" else "cpp"
+        id = f"{program.package}/{program.executable or program.plugin}".lstrip("/")
         node = Node(
-            f"{program.package}/{program.executable or program.plugin}".lstrip("/"), full, program.package, program.kind,
-            program.executable, program.plugin, language, program.path, program.line,
+            id, full, program.package, program.kind, program.executable, program.plugin, language, program.path,
+            program.line,
         )  # fmt: skip
         return node, use
 
@@ -656,7 +657,13 @@ class Join:
 
     @cached_property
     def _uses_of_parameters(self) -> list[FrameworkCall]:
-        return [use for use in self.calls.select_uses("parameter") if not self.sites.wraps(use.fn, "parameter")]
+        uses = self.calls.select_uses("parameter")
+        return [use for use in uses if not self.sites.wraps(use.fn, "parameter") or not self._is_asked_by_callers(use)]
+
+    def _is_asked_by_callers(self, use: FrameworkCall) -> bool:
+        """Whether what a function called like the framework's reads is what its callers name: for one without a class,
+        where it hands on the name it is given beside a node handle."""
+        return bool(use.fn.facts.owner) or self.calls.hands_on_name(use.fn)
 
     def find_library(self, fn: Fn) -> Node | None:
         """The library that a function belongs to, as a node; None outside of packages."""
@@ -847,12 +854,12 @@ class Join:
         written = self.calls.find_argument(use, use.row.topic)
         if written is None or written.kind != "join" or written.text not in ("", "+"):
             return ""
-        known = [(part, self.values.evaluate(part, use.fn, use.call.line)) for part in written.parts]
-        pieces = [found[0].text if len(found) == 1 else None for _, found in known]
+        known = [self.values.evaluate(part, use.fn, use.call.line) for part in written.parts]
+        pieces = [found[0].text if len(found) == 1 else None for found in known]
         if not any(piece and _WORD.search(piece) for piece in pieces):
             return ""
-        spelled = (_spell_open(part) if piece is None else piece for (part, _), piece in zip(known, pieces, strict=True))
-        return "".join(spelled)
+        rows = zip(written.parts, pieces, strict=True)
+        return "".join(_spell_open(part) if piece is None else piece for part, piece in rows)
 
 
 class _Owners:
@@ -867,8 +874,8 @@ class _Owners:
         )
 
     def list_owners(self, use: FrameworkCall, through: Sequence[FrameworkCall] = ()) -> list[Owner]:
-        """Who runs a use: nodes that reach it, else, where no program is seen to reach it, those that are built from its
-        file, else its library, or none. through: as for Join.runs()."""
+        """Who runs a use: nodes that reach it; where no program is seen to, those that are built from its file, else
+        its library, or none. through: as for Join.runs()."""
         found = self._by_function.get(use.fn, [])
         if found or (self.launched and use.fn in self.join.reached):
             return [one for one in found if self.join.runs(one, use, through)]

@@ -372,7 +372,8 @@ class FlowValues:
             one_of = list(self._evaluate_elements(container, fn, line, seen))
             yield from one_of
             if sum(one.text is not None for one in one_of) > 1:
-                yield FlowValue(None, "unresolved", f"which element of `{container.text or container.kind}` it is", True)
+                reason = f"which element of `{container.text or container.kind}` it is"
+                yield FlowValue(None, "unresolved", reason, beside=True)
         else:
             yield from self._evaluate_elements(container, fn, line, seen)
 

@@ -19,7 +19,7 @@ from ..workspace import Package, Workspace, link
 from .callers import Callers, build_callers
 from .defined import DefinedInterfaces
 from .file_selection import BUILD, compute_code_key, is_code, list_run_by_hand, make_code_selector
-from .graph import Graph
+from .graph import COPIED, Graph, Unresolved
 from .join import Join
 from .launches import Launch
 from .nodes import BuiltPackage, asks_for_name, find_entry_point
@@ -239,7 +239,8 @@ def make_graph(
 
         start = join_launched([follow_workspace_launch(workspace, one.path, one.arguments) for one in chosen])
         code = get_flow(workspace).code
-        return add_bridges(code.build(root, rev, _list_unread(code), start), start, InWorkspace(workspace))
+        found = add_bridges(code.build(root, rev, _list_unread(code), start), start, InWorkspace(workspace))
+        return _name_copies(found, workspace)
 
     def make() -> Graph:
         code = get_flow(workspace).code
@@ -247,8 +248,23 @@ def make_graph(
 
     flow = get_flow(workspace)
     flow.jobs = jobs
-    graph = recall(store, "graph", flow.key, Graph, make) if code_alone else flow.system
+    # What the system has of its code names copies already.
+    graph = _name_copies(recall(store, "graph", flow.key, Graph, make), workspace) if code_alone else flow.system
     return msgspec.structs.replace(graph, root=root, rev=rev)
+
+
+def _name_copies(graph: Graph, workspace: Workspace) -> Graph:
+    """A graph that says which packages it has nothing of, since another one has their name."""
+    folders = {package.name: package.path for package in workspace}
+    copies = tuple(
+        Unresolved(COPIED, f"another package of this name is read, in `{folders.get(one.name) or '.'}`",
+                   one.manifest_path, 1, one.name)
+        for one in workspace.hidden
+    )  # fmt: skip
+    if not copies:
+        return graph
+    coverage = msgspec.structs.replace(graph.coverage, unresolved=(*graph.coverage.unresolved, *copies))
+    return msgspec.structs.replace(graph, coverage=coverage)
 
 
 def _list_unread(join: Join) -> list[str]:

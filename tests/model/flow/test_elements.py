@@ -138,6 +138,7 @@ def test_a_parameter_that_is_named_in_part():
     declare_parameter(plugin_name_ + "." + kind(), 1.0);
     declare_parameter(plugin_name_, 1.0);
     declare_parameter(std::string("x") + "." + "y", 1.0);"""
-    found = graph({"deck/panel.cpp": CPP.replace("HERE", body).replace("};\nint", " std::string plugin_name_;\n};\nint")})
+    code = CPP.replace("HERE", body).replace("};\nint", " std::string plugin_name_;\n};\nint")
+    found = graph({"deck/panel.cpp": code})
     assert [one.name for one in found.parameters] == ["<plugin_name_>.speed", "x.y"]
     assert [one.line for one in found.coverage.unresolved if one.what == "parameter name"] == [5, 6, 7]

@@ -595,7 +595,7 @@ def test_what_a_started_program_is_built_of_is_its_own_where_nothing_is_seen_to_
               return true;
             }
         """,
-        "car/other.cpp": "int main(int c, char** v) { rclcpp::init(c, v); rclcpp::Node node(\"other\"); }",
+        "car/other.cpp": 'int main(int c, char** v) { rclcpp::init(c, v); rclcpp::Node node("other"); }',
         "car/launch/all.launch.py": """
             from launch import LaunchDescription
             from launch_ros.actions import Node
@@ -611,3 +611,15 @@ def test_what_a_started_program_is_built_of_is_its_own_where_nothing_is_seen_to_
         ("/left", "/points", "something calls `Driver::open`")
     ]
     assert [(one.node, one.name) for one in found.parameters] == [("/left", "port")]
+
+
+def test_a_package_that_is_left_out_for_its_name_is_named(tmp_path):
+    files = {
+        "car/package.xml": manifest("car", "catkin"), "car/horn.py": HORN % ("os", "horn"),
+        "old/car/package.xml": manifest("car", "catkin"), "old/car/horn.py": HORN % ("os", "old_horn"),
+    }  # fmt: skip
+    found = graph_on_disk(tmp_path, files)
+    (read,) = (node.path.rpartition("/")[0] for node in found.nodes)
+    named = [(one.path, one.written, one.reason) for one in found.coverage.unresolved if one.what == "package"]
+    (left_out,) = {"car", "old/car"} - {read}
+    assert named == [(f"{left_out}/package.xml", "car", f"another package of this name is read, in `{read}`")]
