@@ -90,7 +90,8 @@ class Declarations(FunctionReader):
                 name, marks = self.split_declarator(child)
                 if name is None:
                     continue
-                self.assign(name, FlowExpr("make", kind_ + marks), guard, kind_ + marks)
+                empty = FlowExpr("text") if kind_.endswith("stringstream") else FlowExpr("make", kind_ + marks)
+                self.assign(name, empty, guard, kind_ + marks)
             elif number in DECLARED_TYPES:
                 self.add_local_type(child)
         return value

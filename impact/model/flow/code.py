@@ -20,6 +20,8 @@ from ...facts.flow import (
     FlowFunction,
     FlowParameter,
 )
+from ...facts.python.flow_expressions import make_join
+from ...facts.python.text import split_percent_format
 from .includes import SeenFiles
 from .modules import CodeFile, PythonModules
 from .types import UNKNOWN, Cls, FlowType, parse_flow_type, split_name
@@ -189,6 +191,7 @@ def _list_changes(fn: Fn) -> Iterator[Assignment]:
     changed = [(path, row) for row in fn.facts.calls for path in _list_changed(row)]
     elements = (row for row in fn.facts.assignments if row.target.endswith(".[]"))
     changed += [(row.target.removesuffix(".[]"), row) for row in elements]
+    yield from _list_printed(fn)
     if not changed:
         return
     strings = {row.name for row in fn.facts.parameters if _is_string_type(row.type)}
@@ -197,6 +200,20 @@ def _list_changes(fn: Fn) -> Iterator[Assignment]:
         # No container but a string has `replace`.
         if path in strings or (isinstance(row, FlowCall) and row.callee == f"{path}.replace"):
             yield Assignment(path, FlowExpr("other", f"{path} changed in place"), row.line, row.guard)
+
+
+def _list_printed(fn: Fn) -> Iterator[Assignment]:
+    """What `snprintf` and `sprintf` write in a function, and what `str` begins a stream with."""
+    for call in fn.facts.calls:
+        name, arguments = get_tail(call.callee), call.arguments
+        if name in ("snprintf", "sprintf") and arguments[:1] and arguments[0].kind == "name":
+            place = 2 if name == "snprintf" else 1
+            pieces = split_percent_format(arguments[place].text) if arguments[place:] else None
+            known = pieces is not None and arguments[place].kind == "text"
+            joined = make_join(pieces if known else None, arguments[place + 1 :])
+            yield Assignment(arguments[0].text, joined or FlowExpr("other", name), call.line, call.guard)
+        elif name == "str" and len(arguments) == 1 and call.callee.endswith(".str"):
+            yield Assignment(call.callee.removesuffix(".str"), arguments[0], call.line, call.guard)
 
 
 def _list_changed(call: FlowCall) -> Iterator[str]:
