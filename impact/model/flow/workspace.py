@@ -41,6 +41,8 @@ class WorkspaceFlow:
         self._workspace, self._store = workspace, workspace.extraction.store
         # Processes to use.
         self.jobs = 1
+        # Launch files that are started together, by the name of their system.
+        self.systems: dict[str, tuple[ChosenLaunch, ...]] = {}
 
     @cached_property
     def code(self) -> Join:
