@@ -26,6 +26,7 @@ from .nodes import BuiltPackage, asks_for_name, find_entry_point
 from .plugins import assign_plugins, list_plugin_loads
 from .simulated import add_simulated
 from .system import ChosenLaunch, join_launched, merge_launches
+from .text_search import add_text_coverage
 from .uncompiled import find_uncompiled
 
 _LIBRARIES = frozenset(("library", "module", "interface"))
@@ -246,7 +247,7 @@ def make_graph(
 
     def make() -> Graph:
         code = get_flow(workspace).code
-        return code.build(unread=_list_unread(code))
+        return add_text_coverage(code.build(unread=_list_unread(code)), code, workspace.read)
 
     flow = get_flow(workspace)
     flow.jobs = jobs
