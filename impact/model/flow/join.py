@@ -593,15 +593,17 @@ class Join:
                 continue
             if owners.launched:
                 site = self._adapt_site(site, those[0])
+            coming = [owner for owner in those if not self._is_left_out(site.use, owner)]
+            adapted = [(owner, self._adapt_site(site, owner)) for owner in coming]
             if not site.implied:
-                lacking = self._find_missing(site)
+                # Of nodes that run the same code, one may have a name that is not known.
+                every = ((those[0], site), *adapted)
+                found = (self._find_missing(one) or self._find_refused(one, owner) for owner, one in every)
+                lacking = next(filter(None, found), None)
                 lost = Unresolved(*lacking, *_get_place(site.use), site.written) if lacking else None
                 count.call(lost, (site,))
-            for owner in those:
-                if self._is_left_out(site.use, owner):
-                    continue
+            for owner, here in adapted:
                 owners.use(owner)
-                here = self._adapt_site(site, owner)
                 for value in here.names:
                     for type_ in _select_types(here, owner):
                         yield self._make_endpoint(here, value, type_, owner)
@@ -685,6 +687,11 @@ class Join:
             return f"{site.role} callback", site.reason
         return None
 
+    def _find_refused(self, site: Site, owner: Owner) -> tuple[str, str] | None:
+        """What of a site is not known since ROS refuses its name."""
+        found = [self.resolve_name(site, value, owner) for value in site.names]
+        return next(((f"{site.role} name", reason) for name, _, reason in found if not name), None)
+
     def _adapt_site(self, site: Site, owner: Owner) -> Site:
         """A site as it is for whoever runs it: with the parameters and the arguments that a launch gives."""
         if not isinstance(owner, Running) or site.implied or (owner.values is self.values and self._is_written(site)):
@@ -697,7 +704,7 @@ class Join:
         self.values.asked.clear()
         # What code that the node does not run passes to its functions is none of its names.
         names = self.sites.list_names(site.use, site.prefix, owner.values.run(owner.functions))
-        if all(name.text is None for name in names):
+        if all(name.text is None for name in names) and any(name.unpassed for name in names):
             # It comes from code that the node does not run, as far as is known.
             elsewhere = self.sites.list_names(site.use, site.prefix, owner.values)
             names = tuple(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import posixpath
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
@@ -11,7 +12,8 @@ from typing import NamedTuple
 
 from ....edges.groups import group_pairs
 from ...facts.flow import Assignment, FlowCall, FlowExpr, FlowParameter, Guard
-from ...facts.python.flow_expressions import LONGEST_OTHER
+from ...facts.python.flow_expressions import LONGEST_OTHER, make_join
+from ...facts.python.text import format_pieces
 from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number
@@ -49,6 +51,9 @@ _SAME = frozenset(
 _OF_FIRST = frozenset(("resolveName", "resolve_name", "remap_name", "resolve", "string", "str", "String", "move",
                        "forward", "ParameterValue", "expand_topic_or_service_name", "resolve_topic_name",
                        "resolve_service_name", "resolve_topic_or_service_name"))  # fmt: skip
+_STRING_METHODS = frozenset(
+    ("capitalize", "join", "lower", "lstrip", "removeprefix", "removesuffix", "replace", "rstrip", "strip", "upper")
+)
 # What is least certain of a text that is put together, first.
 _LEAST: tuple[How, ...] = ("default", "launch", "given", "literal")
 # Kinds of guards that ask something, and conditions that are a variable alone.
@@ -117,6 +122,8 @@ class FlowValues:
         self.node, self.made = node, made or {}
         # The namespace of the node handle that a use is called on, and what is known of that, by the call.
         self.find_prefix: Callable[[FrameworkCall], str] = lambda use: ""
+        # The value of a message's constant by its path, where it is a string.
+        self.find_message_text: Callable[[str, Fn], str | None] = lambda path, fn: None
         self._prefixes: dict[int, str] = {}
         self._left = _MOST_STEPS
         self._budget = [_STEPS_IN_ALL + _STEPS_A_FUNCTION * len(self.code.functions)]
@@ -163,6 +170,7 @@ class FlowValues:
         other._budget, other.asked, other._decided = self._budget, self.asked, self._decided
         other._known, other._works = self._known, self._works
         other.find_prefix, other._prefixes = self.find_prefix, self._prefixes
+        other.find_message_text = self.find_message_text
         return other
 
     def evaluate(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
@@ -198,7 +206,9 @@ class FlowValues:
             yield FlowValue(None, "unresolved", "too many steps")
             return
         kind = value.kind
-        if kind in ("text", "number"):
+        if kind == "number" and value.text[:1] == "'" and len(value.text) == 3:
+            yield FlowValue(value.text[1])
+        elif kind in ("text", "number"):
             yield FlowValue(value.text)
         elif kind == "name":
             yield from self._evaluate_name(value.text, fn, line, seen)
@@ -244,8 +254,18 @@ class FlowValues:
 
     def _evaluate_join(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         pieces = [_take_first(self._evaluate(part, fn, line, seen)) for part in value.parts]
+        plain = value.text in ("+", "/", "%") and not any(map(_is_string, value.parts))
         for row in islice(product(*pieces), _MOST):
-            yield _join(row)
+            # Numbers are added; of what may be either, it is not known.
+            numbers = plain and all(one.text is not None and is_number(one.text) for one in row)
+            counted = numbers and value.text == "+" and any(part.kind == "number" for part in value.parts)
+            if counted:
+                joined = _join(row)
+                yield joined._replace(text=str(sum(int(one.text or "") for one in row)))
+            elif numbers:
+                yield FlowValue(None, "unresolved", "whether numbers are counted is not followed")
+            else:
+                yield _join(row)
 
     def _evaluate_choice(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         """What is chosen: one of two, where it is known which, else either."""
@@ -453,11 +473,29 @@ class FlowValues:
             yield from self._evaluate(last.value, fn, last.line, (*seen, variable))
             return
         found = list(self.evaluate_variable(variable, fn, (*seen, variable), self._find_origins(path, fn), at, line))
+        if not found:
+            found = list(self._evaluate_declared(path, fn, line, (*seen, variable)))
+        told = None if found else self.find_message_text(path, fn)
         if found:
             yield from found
+        elif told is not None:
+            yield FlowValue(told)
         else:
             how = "given" if "." in path and self.command_line.is_parsed(path, fn) else "unresolved"
             yield FlowValue(None, how, f"nothing tells what `{path}` is")
+
+    def _evaluate_declared(self, path: str, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
+        """What a path of Python is that names a member of a class, or a method that is read like a member."""
+        head, _, name = path.rpartition(".")
+        if fn.source.facts.language != "python" or not head:
+            return
+        owner = self.code.find_class(head, fn.source, fn.scope) if head != "this" else None
+        if owner is not None:
+            member = Variable("member", owner.key, name)
+            if not self._is_in(member, seen):
+                yield from self.evaluate_variable(member, fn, (*seen, member))
+        elif self.code.list_targets(path, fn):
+            yield from self._evaluate_inner(path, fn, line, seen)
 
     def _find_written_before(self, path: str, fn: Fn, line: int) -> Assignment | None:
         """The assignment to a member of another object that a line of a function surely comes after, where nothing
@@ -832,7 +870,12 @@ class FlowValues:
             cls, _, member = name.replace(".", "::").rpartition("::")
             found_class = self.code.find_class(cls, fn.source, fn.scope)
             if found_class is not None:
-                yield from self.evaluate_variable(Variable("member", found_class.key, member), fn, seen)
+                variable = Variable("member", found_class.key, member)
+                defined = self.code.list_definitions(f"{found_class.name}::{member}")
+                for constant, source in defined if len({one.value for one, _ in defined}) == 1 else ():
+                    yield from self._evaluate(constant.value, self.code.find_first(source, fn), constant.line, seen)
+                    return
+                yield from self.evaluate_variable(variable, fn, seen)
 
     def _evaluate_passed(self, fn: Fn, place: int, parameter: FlowParameter, seen: tuple) -> Iterator[FlowValue]:
         """What callers pass for a parameter, and its default where one of them, or nobody that is known, passes it."""
@@ -851,7 +894,7 @@ class FlowValues:
             yield from self._evaluate(default, fn, fn.facts.line, seen)
         elif not given:
             reason = f"an argument of `{fn.name or 'the module'}`, which nothing here calls"
-            yield FlowValue(None, "given", reason, uncalled=self.code.is_idle(fn))
+            yield FlowValue(None, "given", reason, uncalled=self.code.is_idle(fn), unpassed=True)
 
     def _find_given(self, value: FlowExpr, fn: Fn) -> tuple[int, FlowParameter] | None:
         """The parameter of a constructor that a value is, None for all else."""
@@ -883,6 +926,10 @@ class FlowValues:
         if last in _NODE_NAMESPACE and not value.parts and not own:
             yield FlowValue(NAMESPACE)
             return
+        python = fn.source.facts.language == "python"
+        if python and last in _STRING_METHODS and (head or value.receiver is not None):
+            yield from self._evaluate_string_method(value, fn, line, seen)
+            return
         if head and (last in _SAME or (last == "get" and value.receiver is not None and not value.parts)):
             if value.receiver is not None and value.receiver.kind == "call":
                 yield from self._evaluate(value.receiver, fn, line, seen)
@@ -897,6 +944,16 @@ class FlowValues:
                 for one in chosen:
                     yield from self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value)))
                 return
+        if value.text == "format" and len(value.parts) == 2 and (python or value.parts[0].kind != "text"):
+            written = next(iter(self._evaluate(value.parts[1], fn, line, seen)), _NOT_GIVEN).text
+            for one in self._evaluate(value.parts[0], fn, line, seen):
+                yield one if one.text is None else _format(one, written)
+            return
+        if value.text in ("fmt::format", "std::format") and value.parts and value.parts[0].kind == "text":
+            joined = make_join(format_pieces(value.parts[0].text), value.parts[1:])
+            if joined is not None:
+                yield from self._evaluate_join(joined, fn, line, seen)
+                return
         if last == "to_string" and len(value.parts) == 1:
             found = list(self._evaluate(value.parts[0], fn, line, seen))
             # Of what is no whole number, it is not the same text.
@@ -907,6 +964,9 @@ class FlowValues:
                 yield FlowValue(None, "unresolved", (reasons or ["a number as a text is not followed"])[0])
             return
         # Options of ROS 1 are named by the name they are for.
+        if last == "string" and len(value.parts) > 1:
+            yield FlowValue(None, "unresolved", f"what `{value.text}` makes of several values is not followed")
+            return
         if (last in _OF_FIRST or (last.startswith("create") and "Options::" in value.text)) and value.parts:
             yield from self._evaluate(value.parts[0], fn, line, seen)
             return
@@ -919,6 +979,43 @@ class FlowValues:
             yield from self._evaluate_join(FlowExpr("join", "", (first, FlowExpr("text", "/"), second)), fn, line, seen)
             return
         yield from self._evaluate_inner(value.text, fn, line, seen, value.parts)
+
+    def _evaluate_string_method(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
+        """What a method of a string of Python gives, and `os.path.join`."""
+        head, _, method = value.text.rpartition(".")
+        unknown = FlowValue(None, "unresolved", f"what `{value.text}` gives is not known")
+        arguments = value.parts
+        if method == "join" and value.receiver is None and head.rpartition(".")[2] in ("path", "osp", "posixpath"):
+            pieces = [_take_first(self._evaluate(part, fn, line, seen)) for part in arguments]
+            for row in islice(product(*pieces), _MOST):
+                joined = _join(row)
+                texts = [one.text or "" for one in row]
+                yield joined if joined.text is None else joined._replace(text=posixpath.join(*texts))
+            return
+        if method == "join":
+            listed = arguments[0] if len(arguments) == 1 and arguments[0].kind == "list" else None
+            if listed is None or value.receiver is None:
+                yield unknown
+                return
+            between = [part for each in listed.parts for part in (value.receiver, each)][1:]
+            yield from self._evaluate_join(FlowExpr("join", "", tuple(between)), fn, line, seen)
+            return
+        if value.receiver is not None:
+            held = list(self._evaluate(value.receiver, fn, line, seen))
+        elif head.endswith("()"):
+            held = list(self._evaluate_inner(head.removesuffix("()"), fn, line, seen))
+        else:
+            held = list(self._evaluate_name(head, fn, line, seen))
+        given = [_take_first(self._evaluate(part, fn, line, seen)) for part in arguments]
+        for one, *row in islice(product(held, *given), _MOST):
+            texts = [each.text for each in row if each.text is not None]
+            if one.text is None or len(texts) < len(row):
+                yield one if one.text is None else unknown
+                continue
+            try:
+                yield _join((one, *row))._replace(text=getattr(one.text, method)(*texts))
+            except (TypeError, AttributeError):
+                yield unknown
 
     def _evaluate_inner(
         self, callee: str, fn: Fn, line: int, seen: tuple, arguments: tuple[FlowExpr, ...] | None = None
@@ -1106,7 +1203,18 @@ def _restore_alone(values: list[FlowValue]) -> list[FlowValue]:
 
 def _is_string(value: FlowExpr) -> bool:
     """Whether an expression shows itself to be a string, and no number."""
-    return value.kind == "text" or (value.kind == "join" and any(map(_is_string, value.parts)))
+    written = value.kind == "text" or (value.kind == "number" and value.text[:1] == "'")
+    return written or (value.kind == "join" and (not value.text or any(map(_is_string, value.parts))))
+
+
+_COUNTED = re.compile(r"0?[0-9]{0,2}d?")
+
+
+def _format(value: FlowValue, spec: str | None) -> FlowValue:
+    """A value as a format of Python writes it."""
+    if spec is None or not _COUNTED.fullmatch(spec) or not is_number(value.text or ""):
+        return FlowValue(None, "unresolved", f"how `{spec or '{}'}` writes it is not followed")
+    return value._replace(text=format(int(value.text or ""), spec))
 
 
 def _is_sure(values: list[FlowValue]) -> bool:
