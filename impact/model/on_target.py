@@ -495,6 +495,22 @@ class WorkspaceOnTarget:
         known = self._library_names
         return [n for n in dict.fromkeys((name.lower(), folded, folded.rstrip("0123456789"))) if n in known]
 
+    @cache_method
+    def list_components(self, package: str) -> dict[str, bool]:
+        """The components that the CMake package of a system library has in some version, as its configurations or
+        targets tell them, each with whether the target has it; none where they are not known."""
+        configured = self.providers.list_configured_components(package)
+        if configured:
+            return {name: self.target.platform in platforms for name, platforms in configured.items()}
+        library = name_library(package)
+        here = {version for version in load_libraries().find_range(library, self.target.platform) if version}
+        known = load_libraries().list_components(library, package) if here else {}
+        return {name: here <= versions for name, versions in known.items()}
+
+    def find_library_version(self, package: str) -> str:
+        """The version of the system library that a CMake package is of; empty where it is not known."""
+        return self.target.find_library(name_library(package)) or ""
+
     @cached_property
     def _library_names(self) -> frozenset[str]:
         return self.target.list_library_names()

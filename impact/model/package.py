@@ -63,6 +63,7 @@ if TYPE_CHECKING:
     from ..facts.extract import ExtractedFacts
     from ..targets.asked_versions import AskedVersions
     from .api import Changes
+    from .cpp.own_classes import LeftOut, OwnClasses
     from .cpp.resolver import KnownFile
     from .discovery import PackagePlace
     from .members import FoundField
@@ -281,6 +282,34 @@ class ValueUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     text: str
 
 
+class LostOverrideUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A method that is to override one of a base class of the workspace, and does not. kind, base, method, class_,
+    declared: as LostOverride has them."""
+
+    kind: str
+    base: str
+    method: str
+    class_: str
+    declared: str
+    at: At
+    role: str
+    conditions: tuple[Condition, ...] = ()
+
+
+class AbstractUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A class of which objects are made, and that leaves out a pure virtual method of a base of the workspace. at: the
+    class, or where an object is made where another package has it. made: where an object is made; None for a plugin."""
+
+    base: str
+    method: str
+    class_: str
+    declared: str
+    at: At
+    made: At | None
+    role: str
+    conditions: tuple[Condition, ...] = ()
+
+
 class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """All that rules ask of one package. Paths are relative to the workspace.
 
@@ -378,6 +407,9 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     values: tuple[ValueUse, ...] = ()
     # #error lines in files that are compiled, with their messages as names.
     errors: tuple[NameUse, ...] = ()
+    # Classes whose bases are classes of the workspace.
+    lost_overrides: tuple[LostOverrideUse, ...] = ()
+    abstract: tuple[AbstractUse, ...] = ()
 
 
 # What no other package is asked about but one that has to do with it, see Workspace.groups: what its code says.
@@ -388,6 +420,7 @@ _INWARD = {
         "includes", "imports", "needed_headers", "reaches", "inner", "written_inner", "syntax", "allows", "problems",
         "uses", "members", "python_api", "cpp_api", "unresolved_receivers", "undefined", "own_calls", "unsearched",
         "unincluded", "undeclared", "settings", "testing", "python_offer", "values", "errors",
+        "lost_overrides", "abstract",
     }
 }  # fmt: skip
 
@@ -673,6 +706,7 @@ class PackageJoin:
 
         roots, programs = self.list_python_roots(setup), set(self.list_programs())
         uses = [*self.list_uses(roles), *self.list_python_uses(python), *self.list_parameter_uses(parameters)]
+        lost_overrides, abstract = self.read_own_classes(roles)
         return LinkedPackage(
             self.name,
             self.path,
@@ -751,6 +785,8 @@ class PackageJoin:
             unsearched=tuple(self.list_unsearched(roles)),
             unincluded=tuple(self.list_unincluded(roles)),
             undeclared=tuple(self.list_undeclared(roles)),
+            lost_overrides=tuple(lost_overrides),
+            abstract=tuple(abstract),
             own_fields=tuple(
                 FieldOfWorkspace(
                     use.type, use.steps, At(path, use.line, use.column), self.find_python_role(path), use.conditions
@@ -988,6 +1024,68 @@ class PackageJoin:
                     at = At(path, first.at.line, first.at.column)
                     use = NameUse(word, at, role, False, "cpp", around, targets, first.place.owner)
                     yield use, bases, self.list_outward(path)
+
+    def read_own_classes(self, roles) -> tuple[list[LostOverrideUse], list[AbstractUse]]:
+        """As LinkedPackage.lost_overrides and LinkedPackage.abstract."""
+        lost: list[LostOverrideUse] = []
+        left_out: dict[str, list[LeftOut]] = {}
+        for path, (role, _, targets, conditions) in roles.items():
+            facts = self.cpp.get(path)
+            if not targets or facts is None or not facts.parents:
+                continue
+            types = {word for at in self._list_around(path) for word in self.load(at).type_names}
+            derived = {last for last, words in facts.parents if not (types - {last}).isdisjoint(words.split())}
+            if not derived:
+                continue
+            classes = self._find_own_classes(path)
+            for class_ in self.load(path).declarations.classes:
+                if class_.name.rpartition("::")[2] not in derived or class_.specialised:
+                    continue
+                for found in classes.list_lost_overrides(class_):
+                    around = conditions + self.macros.resolve_conditions(found.spot.conditions or (), targets)
+                    at = At(path, found.spot.line, found.spot.column)
+                    lost.append(LostOverrideUse(found.kind, found.base, found.method, found.class_, found.declared, at,
+                                                role, around))  # fmt: skip
+                left_out[class_.name] = list(classes.list_left_out(class_, path))
+        return lost, list(self._list_abstract(roles, {name: found for name, found in left_out.items() if found}))
+
+    def _list_abstract(self, roles, left_out: Mapping[str, list[LeftOut]]) -> Iterator[AbstractUse]:
+        """left_out: by the class that has no such method."""
+        lasts = {name.rpartition("::")[2] for name in left_out}
+        seen: set[str] = set()
+        for path, (role, _, targets, conditions) in roles.items() if left_out else ():
+            if not targets or path not in self.cpp or lasts.isdisjoint(self.list_words(path)):
+                continue
+            for name, spot in self._find_own_classes(path).list_made(lasts, self.cpp[path].exports):
+                if name not in left_out or name in seen or (spot is not None and spot.conditions is None):
+                    continue
+                seen.add(name)
+                around = spot.conditions or () if spot is not None else ()
+                around = conditions + self.macros.resolve_conditions(around, targets)
+                made = At(path, spot.line, spot.column) if spot is not None else None
+                for found in left_out[name]:
+                    at = At(found.path, found.spot.line, found.spot.column)
+                    yield AbstractUse(found.base, found.method, name, found.declared, at, made, role, around)
+
+    def _list_around(self, path: str) -> list[str]:
+        """A C++ file, and the headers of the workspace that it reaches."""
+        own = (at for at in self.list_reached(path) if at != path and at in self.cpp)
+        return [path, *own, *self.list_offered(path)]
+
+    @cache_method
+    def _find_own_classes(self, path: str) -> OwnClasses:
+        from .cpp.own_classes import ClassFile, OwnClasses
+        from .cpp.resolver import Resolver
+
+        files = [ClassFile(at, self.load(at)) for at in self._list_around(path)]
+        return OwnClasses(files, Resolver([file.known for file in files], None, None), self._count_classes)
+
+    @cache_method
+    def _count_classes(self, name: str) -> int:
+        """How many definitions of a class the package has."""
+        last = name.rpartition("::")[2]
+        known = (self.load(path) for path, facts in self.cpp.items() if last in facts.type_names)
+        return sum(one.name == name for file in known for one in file.list_classes(last))
 
     def _has_alike(self, path: str, owner: str, word: str) -> bool:
         """Whether a class has a member that a word may stand for: one letter off, or shortened."""
