@@ -27,7 +27,7 @@ from ..facts.distros import DistroFile
 from ..facts.interface import Interface
 from ..facts.kinds import HEADER_ENDINGS, make_empty
 from ..facts.launch.actions import LaunchFile
-from ..facts.launch.references import PluginClass
+from ..facts.launch.references import ControlledJoint, PluginClass
 from ..facts.manifest import Manifest
 from ..facts.place import Allow, Reference
 from ..facts.python.reader import Import
@@ -61,6 +61,7 @@ from .python.undefined import (
 # What looks for uses is imported where it does: most packages are read back as they were joined before.
 if TYPE_CHECKING:
     from ..facts.extract import ExtractedFacts
+    from ..facts.launch.parameter_files import ParameterEntry
     from ..targets.asked_versions import AskedVersions
     from .api import Changes
     from .cpp.own_classes import LeftOut, OwnClasses
@@ -296,6 +297,17 @@ class LostOverrideUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     conditions: tuple[Condition, ...] = ()
 
 
+class InterfaceClaim(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """An interface of joints that a file of parameters gives a controller. kind: `command` or `state`."""
+
+    controller: str
+    kind: str
+    interface: str
+    joints: tuple[str, ...]
+    at: At
+    role: str
+
+
 class AbstractUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A class of which objects are made, and that leaves out a pure virtual method of a base of the workspace. at: the
     class, or where an object is made where another package has it. made: where an object is made; None for a plugin."""
@@ -410,6 +422,10 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     # Classes whose bases are classes of the workspace.
     lost_overrides: tuple[LostOverrideUse, ...] = ()
     abstract: tuple[AbstractUse, ...] = ()
+    # What robot descriptions give to ros2_control, with their paths.
+    controlled_joints: tuple[tuple[str, ControlledJoint], ...] = ()
+    # What controllers ask for of it.
+    claims: tuple[InterfaceClaim, ...] = ()
 
 
 # What no other package is asked about but one that has to do with it, see Workspace.groups: what its code says.
@@ -420,7 +436,7 @@ _INWARD = {
         "includes", "imports", "needed_headers", "reaches", "inner", "written_inner", "syntax", "allows", "problems",
         "uses", "members", "python_api", "cpp_api", "unresolved_receivers", "undefined", "own_calls", "unsearched",
         "unincluded", "undeclared", "settings", "testing", "python_offer", "values", "errors",
-        "lost_overrides", "abstract",
+        "lost_overrides", "abstract", "claims",
     }
 }  # fmt: skip
 
@@ -563,6 +579,9 @@ _OF_TESTS = frozenset(("TEST", "TEST_F", "TEST_P", "TYPED_TEST", "TYPED_TEST_P",
                        "InitGoogleMock"))  # fmt: skip
 
 
+_CLAIMS = {"command_interfaces": "command", "state_interfaces": "state"}
+
+
 class PackageJoin:
     """Joins the facts of a package's files. build: what its CMake says. files: all its paths. home: packages of the
     same workspace, which are not looked for in what changed elsewhere. asked: the versions of other packages that
@@ -619,6 +638,7 @@ class PackageJoin:
         launches: list[tuple[str, str]] = []
         data_words: list[str] = []
         references, plugins, registered, setup, requirements, interfaces = [], [], [], [], [], []
+        controlled: list[tuple[str, ControlledJoint]] = []
         tree_nodes: list[TreeNodes] = []
         trees: set[str] = set()
         modelled: set[str] = set()
@@ -675,6 +695,7 @@ class PackageJoin:
                 plugins.extend((path, p) for p in getattr(facts, "plugins", ()))
                 trees.update(getattr(facts, "trees", ()))
                 modelled.update(getattr(facts, "modelled", ()))
+                controlled.extend((path, joint) for joint in getattr(facts, "joints", ()))
         unused |= leftover
         if self.build_type == "catkin":  # which starts programs from the source space too
             own = (r for p, r in references if r.package == self.name and self.find_role(p) is None)
@@ -787,6 +808,8 @@ class PackageJoin:
             undeclared=tuple(self.list_undeclared(roles)),
             lost_overrides=tuple(lost_overrides),
             abstract=tuple(abstract),
+            controlled_joints=tuple(controlled),
+            claims=tuple(self.list_claims(parameters)),
             own_fields=tuple(
                 FieldOfWorkspace(
                     use.type, use.steps, At(path, use.line, use.column), self.find_python_role(path), use.conditions
@@ -1300,6 +1323,29 @@ class PackageJoin:
                     yield ValueUse(
                         found.name, found.package, found.plugin, found.node, *place, type_, show_value(found.value)
                     )
+
+    def list_claims(self, parameters: Iterable[str]) -> Iterator[InterfaceClaim]:
+        """The interfaces of joints that files of parameters name beside `joints`."""
+        words = self.read_words
+        wanted = [p for p in parameters if "joints" in words(p) and not _CLAIMS.keys().isdisjoint(words(p))]
+        for path, file in self.look(wanted, "flow_parameters").items():
+            nodes: dict[tuple[str, ...], dict[str, ParameterEntry]] = {}
+            for entry in file.entries:
+                if "ros__parameters" in entry.path[:-1]:
+                    nodes.setdefault(entry.path[:-1], {})[entry.path[-1]] = entry
+            for place, known in nodes.items():
+                joints = known["joints"].value if place[-1] == "ros__parameters" and "joints" in known else None
+                # A controller that commands another one names the joints of that.
+                if not isinstance(joints, list) or "command_joints" in known:
+                    continue
+                plain = tuple(joint for joint in joints if isinstance(joint, str) and "$" not in joint)
+                for key, kind in _CLAIMS.items():
+                    asked = known[key].value if key in known else None
+                    for name in asked if isinstance(asked, list) else ():
+                        if isinstance(name, str) and "$" not in name and "/" not in name:
+                            at = At(path, known[key].line)
+                            controller = place[-2].rpartition("/")[2] if len(place) > 1 else ""
+                            yield InterfaceClaim(controller, kind, name, plain, at, self.find_python_role(path))
 
     @cache_method
     def read_words(self, path: str) -> set[str]:
