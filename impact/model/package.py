@@ -308,6 +308,17 @@ class InterfaceClaim(msgspec.Struct, frozen=True, array_like=True, gc=False):
     role: str
 
 
+class BranchedUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A name of a Python file that is bound in branches on the distro alone, see facts/python/branches.py. branches:
+    the conditions of each after which it can be used."""
+
+    name: str
+    at: At
+    role: str
+    branches: tuple[tuple[Condition, ...], ...]
+    function: str = ""
+
+
 class AbstractUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A class of which objects are made, and that leaves out a pure virtual method of a base of the workspace. at: the
     class, or where an object is made where another package has it. made: where an object is made; None for a plugin."""
@@ -426,6 +437,7 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     controlled_joints: tuple[tuple[str, ControlledJoint], ...] = ()
     # What controllers ask for of it.
     claims: tuple[InterfaceClaim, ...] = ()
+    branched: tuple[BranchedUse, ...] = ()
 
 
 # What no other package is asked about but one that has to do with it, see Workspace.groups: what its code says.
@@ -436,7 +448,7 @@ _INWARD = {
         "includes", "imports", "needed_headers", "reaches", "inner", "written_inner", "syntax", "allows", "problems",
         "uses", "members", "python_api", "cpp_api", "unresolved_receivers", "undefined", "own_calls", "unsearched",
         "unincluded", "undeclared", "settings", "testing", "python_offer", "values", "errors",
-        "lost_overrides", "abstract", "claims",
+        "lost_overrides", "abstract", "claims", "branched",
     }
 }  # fmt: skip
 
@@ -810,6 +822,12 @@ class PackageJoin:
             abstract=tuple(abstract),
             controlled_joints=tuple(controlled),
             claims=tuple(self.list_claims(parameters)),
+            branched=tuple(
+                BranchedUse(one.name, At(path, one.line, one.column), self.find_python_role(path),
+                            tuple(branch.conditions for branch in one.branches), one.function)
+                for path, facts in python.items()
+                for one in facts.branched
+            ),
             own_fields=tuple(
                 FieldOfWorkspace(
                     use.type, use.steps, At(path, use.line, use.column), self.find_python_role(path), use.conditions

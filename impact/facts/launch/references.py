@@ -73,6 +73,10 @@ MENTION = re.compile(
     r"|\$\(\s*(?P<dynamic>find-pkg-share|find-pkg-prefix|find)\s+\$[({]"
     r"|\$\(\s*command\s+['\"]?(?P<command>[A-Za-z][\w.-]*)(?=[\s'\"])"
 )
+_BY_DISTRO = re.compile(
+    r"\$\(\s*(?:find|find-pkg-share)\s+(?P<package>[A-Za-z][\w-]*)\s*\)(?P<before>/[\w./-]*)"
+    r"\$\(\s*(?:opt)?env\s+ROS_DISTRO[^()]*\)(?P<after>[\w./-]+)"
+)
 MARKS = ("$(", "://", "find(")
 
 
@@ -117,6 +121,9 @@ class _Found:
                 self.add("command", "", m["command"], at, conditional)
             else:
                 self.unresolved.append(Problem(self.locate(at)[0], text[m.start() : m.start() + 80]))
+        for m in _BY_DISTRO.finditer(text) if "ROS_DISTRO" in text else ():
+            name = f"{m['before'].lstrip('/')}{{distro}}{m['after']}"
+            self.add("distro file", m["package"], name, offset + m.start(), conditional)
 
     def _add_substitution(
         self, verb: str, args: list[str], rest: str | None, after: str, at: int, conditional: bool
