@@ -46,8 +46,8 @@ class ReferenceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     files, YAML and robot descriptions, see list_words().
 
     Besides the kinds of Reference in general, `model` is a `model://` path (Gazebo finds it on its own search path).
-    joints: of robot descriptions. trees: behaviour trees that a file of BehaviorTree.CPP defines, which others include by their name; modelled: nodes
-    of which it lists the ports for editors.
+    joints: of robot descriptions. trees: behaviour trees that a file of BehaviorTree.CPP defines, which others include
+    by their name; modelled: nodes of which it lists the ports for editors.
     generation: of a launch file, as LaunchFile has it; of a script, the one whose commands alone it calls, else 0.
     """
 

@@ -84,7 +84,8 @@ def reads_distro(node: ast.expr) -> bool:
     """Whether an expression is the variable of the environment that names the distro."""
     if isinstance(node, ast.Subscript):
         key = node.slice
-        return format_dotted(node.value).endswith("environ") and isinstance(key, ast.Constant) and key.value == _VARIABLE
+        asked = key.value if isinstance(key, ast.Constant) else None
+        return asked == _VARIABLE and format_dotted(node.value).endswith("environ")
     if not isinstance(node, ast.Call) or not node.args or not isinstance(node.args[0], ast.Constant):
         return False
     function = format_dotted(node.func)
@@ -223,9 +224,8 @@ def _read_path(node: ast.expr, machine: dict[str, ast.expr], depth: int = 0) -> 
     if (isinstance(node, ast.Name) and node.id in machine) or reads_distro(node):
         return DISTRO
     if isinstance(node, ast.JoinedStr):
-        return "".join(
-            _read_path(one.value if isinstance(one, ast.FormattedValue) else one, machine, depth + 1) for one in node.values
-        )
+        parts = (one.value if isinstance(one, ast.FormattedValue) else one for one in node.values)
+        return "".join(_read_path(one, machine, depth + 1) for one in parts)
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Div):
         between = "/" if isinstance(node.op, ast.Div) else ""
         return between.join(_read_path(one, machine, depth + 1) for one in (node.left, node.right))
