@@ -1,4 +1,4 @@
-"""Lists of repositories of vcstool (`.repos`) and wstool (`.rosinstall`): what is put beside a workspace, from where."""
+"""Lists of repositories of vcstool (`.repos`) and wstool (`.rosinstall`): what is put beside a workspace."""
 
 from __future__ import annotations
 

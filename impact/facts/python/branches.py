@@ -233,8 +233,8 @@ def _read_path(node: ast.expr, machine: dict[str, ast.expr], depth: int = 0) -> 
     if isinstance(node, ast.Call) and function.endswith("path.join"):
         return "/".join(_read_path(one, machine, depth + 1) for one in node.args)
     if isinstance(node, ast.Call) and function.endswith("PathJoinSubstitution") and node.args:
-        items = node.args[0]
-        return "/".join(_read_path(one, machine, depth + 1) for one in items.elts) if isinstance(items, ast.List) else "\0"
+        items = node.args[0].elts if isinstance(node.args[0], ast.List) else ()
+        return "/".join(_read_path(one, machine, depth + 1) for one in items) or "\0"
     if isinstance(node, ast.List):  # substitutions that are put together
         return "".join(_read_path(one, machine, depth + 1) for one in node.elts)
     return "\0"

@@ -33,10 +33,14 @@ _HELP = "[[vcs import < {listed}, or ]]bring its source into the workspace, or p
 
 @rule(
     texts={
-        "never": Text(f"`{{subject}}` is not released in {{distro}}[[ (last released in {{last}})]]{_LISTED}", _HELP),
+        "never": Text(
+            f"`{{subject}}` is not released in {{distro}}[[ (last released in {{last}})]]{_LISTED}", _HELP
+        ),
         "later": Text(f"`{{subject}}` was not released in {{distro}} on that date{_LISTED}", _HELP),
         "dropped": Text(f"`{{subject}}` is no longer released in {{distro}} (since {{day}}){_LISTED}", _HELP),
-        "waiting": Text(f"`{{subject}}` waits for the next sync of {{distro}}{_LISTED}", "use ros-testing, or " + _HELP),
+        "waiting": Text(
+            f"`{{subject}}` waits for the next sync of {{distro}}{_LISTED}", f"use ros-testing, or {_HELP}"
+        ),
     },
 )
 def unreleased_package(view: TargetView, package: Package):

@@ -41,8 +41,9 @@ def missing_distro_file(view: TargetView, package: Package):
         owner = view.workspace.packages.get(reference.package or package.name)
         if reference.kind != "distro file" or use.role not in ("build", "run", "test") or owner is None:
             continue
-        pattern = re.escape(reference.name).replace(re.escape(_DISTRO), "([a-z]+)", 1).replace(re.escape(_DISTRO), r"\1")
-        end = re.compile(rf"(?:.*/)?{pattern}(?:\.in)?")
+        first, *others = map(re.escape, reference.name.split(_DISTRO))
+        rest = r"\1".join(others)
+        end = re.compile(rf"(?:.*/)?{first}([a-z]+){rest}(?:\.in)?")
         files = (*owner.linked.files, *(path for path in owner.build.made))
         there = {found[1] for path in files if (found := end.fullmatch(path)) is not None and found[1] in DISTROS}
         if not there or distro in there:

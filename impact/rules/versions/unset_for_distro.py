@@ -8,8 +8,8 @@ Why it breaks
     Python raises a NameError or UnboundLocalError: the launch file or program does not start.
 
 Severity
-    error in files that are launched or run, at the top of the file or in generate_launch_description(); warning in other
-    functions and in tests.
+    error in files that are launched or run, at the top of the file or in generate_launch_description(); warning in
+    other functions and in tests.
 
 Example
     if os.environ["ROS_DISTRO"] == "humble":
