@@ -144,6 +144,13 @@ def _read_debian_lists(module: str) -> Callable[[Sources, Path, Path], list[str]
     return list_arguments
 
 
+def _build_compiled(sources: Sources, data: Path, own: Path) -> list[str] | None:
+    """The newest stable release of Debian that has the packages of ROS 1 counts, which is the one that is named so."""
+    suite = ["--suite", f"bookworm={sources.apt['bookworm']}"] if "bookworm" in sources.apt else []
+    clones = ["--clones", sources.clones] if sources.clones else []
+    return _call("databuild.compiled", own, *suite, *clones, "--output", data) if suite else None
+
+
 def _build_libraries(sources: Sources, data: Path, own: Path) -> list[str] | None:
     clones = ["--clones", sources.clones] if sources.clones else []
     return _call("databuild.debian", own, *_list_suites(sources.apt), *clones) if sources.apt else None
@@ -175,6 +182,7 @@ STEPS = (
          lambda sources, data, own: _call("databuild.python_std", *sources.stubs) if sources.stubs else None),
     BuildStep("providers", ("providers.sqlite.zst", "providers.json"), ("manifests",), _build_providers),
     BuildStep("apt", ("apt.json.zst",), ("providers",), _read_debian_lists("databuild.apt")),
+    BuildStep("archive", ("archive.json.zst",), ("providers",), _read_debian_lists("databuild.archive")),
     BuildStep("sonames", ("sonames.json.zst",), (), _read_debian_lists("databuild.sonames")),
     BuildStep("find-modules", ("find_modules.json",), (),
          lambda sources, data, own: _call("databuild.find_modules", *sources.cmake.modules)
@@ -196,6 +204,7 @@ STEPS = (
     BuildStep("libraries",
          ("libraries.sqlite", "changes_debian.json.zst", "uses_debian.json", "changes_library_tags.json.zst"),
          ("surfaces", "providers"), _build_libraries),
+    BuildStep("compiled", ("compiled.json.zst",), ("surfaces", "libraries"), _build_compiled),
     BuildStep("includes", ("includes.json.zst",), ("surfaces",), _build_includes),
     BuildStep("pypi", ("changes_pypi.json.zst",), (),
          lambda sources, data, own: _call("databuild.pypi", own, "--output", data) if sources.pypi else None),
