@@ -658,7 +658,7 @@ class FlowValues:
         return (
             (rests.is_limited is None or rests.is_limited == (within is not None))
             and (rests.is_open is None or rests.is_open == bool(self.settings or self.arguments))
-            and (not rests.idle if within is None else rests.runs <= within and rests.idle.isdisjoint(within))
+            and (not rests.idle if within is None else rests.runs.issubset(within) and rests.idle.isdisjoint(within))
             and (not way or rests.free.isdisjoint(way))
             and (not rests.ways or all(way.get(fn) is call for fn, call in rests.ways.items()))
             and (not made or rests.unmade.isdisjoint(made))
