@@ -19,7 +19,7 @@ from ....edges.groups import group_pairs
 from ..outcomes import Bounds
 from .facade import RUNTIME, find_facade, list_folders
 from .interfaces import KnownInterfaces, write_headers
-from .precompiled import Facade, split_dependencies
+from .precompiled import Facade, find_includes, split_dependencies
 from .stubs import CompileError, StubTable, parse_errors
 from .toolchain import (
     NO_CLANG,
@@ -176,6 +176,36 @@ class Workshop:
                 at.parent.mkdir(parents=True, exist_ok=True)
                 write_scratch_file(at, text.encode())
 
+    def _provide_headers(self, unit: SourceUnit, path: Path) -> None:
+        """Makes the headers of messages and facades that a unit and the workspace's headers include, as far as their
+        text tells."""
+        facades = list_folders(self.definitions.ros)
+        waiting, seen = [path], {path}
+        while waiting:
+            at = waiting.pop()
+            text = "\n".join(self._read_lines(str(at)))
+            for header in find_includes(text):
+                folders = (at.parent, *facades, *map(Path, (*unit.folders, *self._folders)))
+                found = next((each / header for each in folders if (each / header).is_file()), None)
+                if found is None:
+                    if header.startswith("/") or not self._is_ours(header, unit):
+                        continue
+                    self._make_header(header, unit)
+                    found = self.include / header
+                if found not in seen:
+                    seen.add(found)
+                    waiting.append(found)
+
+    def _is_ours(self, header: str, unit: SourceUnit) -> bool:
+        """Whether a header is one of a message, or a facade stands for it."""
+        own = find_facade(header, self.definitions.ros, unit.boost)
+        return bool(own or self.definitions.find_key_of_header(header))
+
+    def _has_wanted(self, unit: SourceUnit) -> bool:
+        """Whether a unit was compiled with a header of the machine that ours stand for."""
+        rule = read_text(self.folder / unit.name / "harness.d", _HEADER_BYTES, "replace")
+        return any(self._is_wanted(each, unit) for each in split_dependencies(rule))
+
     def _find_headers(self, unit: SourceUnit, clang: str, path: Path) -> None:
         """Provides all headers that a unit includes and that are not there."""
         seen: set[str] = set()
@@ -245,13 +275,16 @@ class Workshop:
         return self.folder / unit.name / "ri_stubs.hpp"
 
     def _read_line(self, path: str, number: int) -> str:
+        lines = self._read_lines(path)
+        return lines[number - 1] if 0 < number <= len(lines) else ""
+
+    def _read_lines(self, path: str) -> list[str]:
         if path not in self._lines:
             try:
                 self._lines[path] = read_text(Path(path), _HEADER_BYTES, "replace").split("\n")
             except OSError:
                 self._lines[path] = []
-        lines = self._lines[path]
-        return lines[number - 1] if 0 < number <= len(lines) else ""
+        return self._lines[path]
 
     def prepare(self, unit: SourceUnit, write: Callable[[Collection[str]], SourceUnit] | None = None) -> Path:
         """Makes a unit compile: provides headers, stands for what these declare, and leaves parts out that do not
@@ -264,10 +297,16 @@ class Workshop:
         path = folder / "harness.cpp"
         unit.stubs = StubTable(self._read_line, self._is_own, self._list_bases)
         self._store(unit, path)
-        self._find_headers(unit, clang, path)
+        self._provide_headers(unit, path)
         first: CompileError | None = None
+        is_searched = False
         for _ in range(_ROUNDS_OF_STUBS):
             run = self._check(unit, clang, path)
+            if not is_searched and (run.status != 0 or self._has_wanted(unit)):
+                # Only now the preprocessor is asked, which follows what is included into headers of the machine.
+                is_searched = True
+                self._find_headers(unit, clang, path)
+                continue
             if run.status == 0:
                 return path
             errors = parse_errors(run.errors)
@@ -315,7 +354,8 @@ class Workshop:
 
     def _check(self, unit: SourceUnit, clang: str, path: Path) -> CompilerRun:
         flags = ("-ferror-limit=0", "-fno-caret-diagnostics", "-fno-spell-checking", "-ftemplate-backtrace-limit=1")
-        return self._run_clang(unit, clang, ("-S", "-emit-llvm", *flags, str(path), "-o", "harness.ll"), path.parent)
+        flags = (*flags, "-S", "-emit-llvm", "-MD", "-MF", "harness.d", str(path), "-o", "harness.ll")
+        return self._run_clang(unit, clang, flags, path.parent)
 
     def _run_clang(self, unit: SourceUnit, clang: str, rest: Sequence[str], folder: Path) -> CompilerRun:
         """Runs clang as for IR, with the facade as it was compiled before where a unit has it as it is."""
@@ -324,7 +364,9 @@ class Workshop:
         if made is None:
             return run_compiler([clang, *flags, *_IR_FLAGS, *rest], folder)
         at = flags.index("-include")
-        run = run_compiler([clang, *flags[:at], "-include-pch", str(made), *flags[at:], *_IR_FLAGS, *rest], folder)
+        # Its headers come first: the same ones elsewhere would define everything again.
+        given = ("-include-pch", str(made), f"-I{made.parent / 'include'}")
+        run = run_compiler([clang, *flags[:at], *given, *flags[at:], *_IR_FLAGS, *rest], folder)
         if run.status < 0 or (run.status and (str(made) in run.errors or "PCH file" in run.errors)):
             self._facade.forget(made)
             return run_compiler([clang, *flags, *_IR_FLAGS, *rest], folder)

@@ -107,7 +107,7 @@ def _collect_headers(definitions: KnownInterfaces, name: str) -> tuple[dict[str,
             if (text := made.get(header)) is None:
                 continue  # one of the system
         digest.update(f"{header}\n{text}\n".encode())
-        waiting.extend(_INCLUDE.findall(text))
+        waiting.extend(find_includes(text))
     return made, digest.hexdigest()
 
 
@@ -154,6 +154,11 @@ def _remove_old(folder: Path) -> None:
         found = sorted(folder.iterdir(), key=lambda each: each.stat().st_mtime, reverse=True)
         for each in found[_MOST:]:
             shutil.rmtree(each, ignore_errors=True)
+
+
+def find_includes(text: str) -> list[str]:
+    """The headers that a text includes, whatever the conditions."""
+    return _INCLUDE.findall(text)
 
 
 def split_dependencies(text: str) -> list[str]:

@@ -14,7 +14,7 @@ from typing import Any
 
 import z3
 
-from . import operators, texts
+from . import arrays, operators, texts
 from .messages import Messages
 from .modules import Handle, KnownMethod, Outside, PythonClass, PythonFunction, PythonObject, TimeValue
 from .terms import (
@@ -140,6 +140,8 @@ def call_outside(machine: Machine, name: str, given: list[Any], named: dict[str,
         function = _MATH.get(word) if name.startswith("math.") or word in _SAME_IN_NUMPY else None
         if function is not None and all(is_number(one) for one in given) and given:
             return function(machine, given)
+        if not name.startswith("math.") and (array := arrays.make_array(word, given, named)) is not None:
+            return array
     if name in _LOGS:
         if not machine.is_quiet:
             run.logs.append(name.rpartition(".")[2])
