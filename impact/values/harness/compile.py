@@ -483,7 +483,7 @@ class Workshop:
             f'FLAGS="$FLAGS -DRI_KLEE_ENTRY={entry} ${{KLEE_INCLUDE:+-I$KLEE_INCLUDE}}"',
             "eval $CLANG $FLAGS -emit-llvm -c klee_runtime.cpp -o klee_runtime.bc",
             "$LINK harness.bc klee_runtime.bc -o whole.bc",
-            'exec $KLEE --libc=klee --max-time="${SECONDS_AT_MOST:-60}" --emit-all-errors whole.bc', "",
+            'exec $KLEE --libc=klee --ubsan-runtime --max-time="${SECONDS_AT_MOST:-60}" --emit-all-errors whole.bc', "",
         ]  # fmt: skip
         write_file(script, "\n".join(lines).encode())
         script.chmod(0o755)

@@ -576,11 +576,17 @@ class PythonMachine:
     # Expressions.
 
     def evaluate(self, node: ast.expr, scope: Scope) -> Any:
-        """The value of an expression. Raises PythonThrownError and NotModelledError."""
+        """The value of an expression. Raises PythonThrownError and NotModelledError, but for the latter while a node
+        is made: what is not known is any value then."""
         step = getattr(self, f"_evaluate_{type(node).__name__.lower()}", None)
-        if step is None:
-            raise NotModelledError(f"expression {type(node).__name__}")
-        return step(node, scope)
+        try:
+            if step is None:
+                raise NotModelledError(f"expression {type(node).__name__}")
+            return step(node, scope)
+        except NotModelledError:
+            if not self.run.is_preparing:
+                raise
+            return Opaque(_spell(node) or "something")
 
     def _evaluate_constant(self, node: ast.Constant, scope: Scope) -> Any:
         return node.value
@@ -1145,7 +1151,7 @@ def _make_load(node: ast.expr) -> ast.expr:
 
 
 def _spell(node: ast.expr) -> str:
-    """The last name of a decorator."""
+    """The last name of an expression, empty where it has none."""
     if isinstance(node, ast.Call):
         node = node.func
     if isinstance(node, ast.Attribute):
