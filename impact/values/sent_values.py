@@ -104,9 +104,7 @@ def _list_few(collected: _Collected, solving: Solving) -> set[int] | None:
     return found
 
 
-def _try_values(
-    solving: Solving, path: CallbackPath, term: z3.BitVecRef, conditions: Sequence[z3.BoolRef]
-) -> set[int]:
+def _try_values(solving: Solving, path: CallbackPath, term: z3.BitVecRef, conditions: Sequence[z3.BoolRef]) -> set[int]:
     """Values of a term that are had without the solver, by small numbers for one of its inputs."""
     found: set[int] = set()
     for name in sorted(solving.find_traits(term).names)[:3]:

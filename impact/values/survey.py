@@ -18,6 +18,7 @@ from ..model.flow.workspace import list_code
 from ..model.workspace import Workspace
 from .answers import CallbackAnswer, CallbackExample, ValuesReport
 from .evaluate import Evaluated, evaluate
+from .field_types import find_integer
 from .harness.callbacks import CppCallback, list_callbacks
 from .harness.compile import CannotCompile
 from .harness.fuzzing import run_fuzzer
@@ -193,7 +194,7 @@ class Survey:
                 one.reason, stood_for=one.stood_for,
             )  # fmt: skip
             identity = one.kind, one.path, one.line, one.callback
-            yield _Target(identity, answer, _name_constants(one.constants), one)
+            yield _Target(identity, answer, _name_constants(one.constants, self.workspace.ros), one)
 
     # Python.
 
@@ -247,7 +248,8 @@ class Survey:
 
     def _name_python_constants(self, type_: str) -> Mapping[str, Mapping[int, str]]:
         package, _, name = type_.partition("/")
-        return _name_constants(list_constants(self._definitions, f"{package}/msg/{name}")) if name else {}
+        found = list_constants(self._definitions, f"{package}/msg/{name}") if name else {}
+        return _name_constants(found, self.workspace.ros)
 
     # Replays.
 
@@ -382,12 +384,14 @@ def _judge(example: CallbackExample, witness: Witness, seen: Replayed) -> Callba
     return replace(example, confirmed=False, note=f"the replay saw: {what}")
 
 
-def _name_constants(constants: Mapping[str, tuple[str, str]]) -> Mapping[str, Mapping[int, str]]:
+def _name_constants(constants: Mapping[str, tuple[str, str]], ros: int) -> Mapping[str, Mapping[int, str]]:
     """Names of constants by the type of the fields that they are for, `uint8`."""
     found: dict[str, dict[int, str]] = {}
     for name, (type_, value) in constants.items():
+        number = find_integer(type_, ros)
+        key = f"{'int' if number.is_signed else 'uint'}{number.bits}" if number is not None else type_
         with suppress(ValueError):
-            found.setdefault({"byte": "int8", "char": "uint8"}.get(type_, type_), {}).setdefault(int(value, 0), name)
+            found.setdefault(key, {}).setdefault(int(value, 0), name)
     return found
 
 

@@ -1,4 +1,4 @@
-"""Callbacks of our own, in callbacks/: ten as they occur on robots, and more for kinds of crashes and parts of a language.
+"""Callbacks of our own, in callbacks/: ten as they occur on robots, and more for kinds of crashes and parts of C++.
 
 `// NAME KIND` behind a line marks where a callback crashes, and how. What becomes of the values of its fields stands in
 callbacks/expected.txt; write that file anew with
@@ -25,7 +25,7 @@ from rosimpact.impact.values.outcomes import Bounds, CrashKind, Reaction
 FOLDER = Path(__file__).parent / "callbacks"
 WORKSPACES = ("ten", "roscpp", "rclcpp", "python")
 _MARK = re.compile(r"(?://|#) (\w+) ([A-Z_]+)$")
-_CALLBACK = re.compile(r"(?:void|def) (on\w+)\(")
+_CALLBACK = re.compile(r"(?:void|def) (on\w+)\(|\[this\]\(")
 
 
 @functools.cache
@@ -33,15 +33,13 @@ def explore_own(name: str) -> dict[str, CallbackAnswer]:
     """The callbacks of a workspace with replays, by the last part of their names, within bounds that no time limits."""
     patient = functools.partial(survey.evaluate, seconds=900.0)
     with mock.patch.object(survey, "evaluate", patient):
-        answer = explore_values(
-            FOLDER / name, bounds=Bounds(seconds=900.0), replays=True, publishers=False, jobs=2
-        )  # fmt: skip
+        answer = explore_values(FOLDER / name, bounds=Bounds(seconds=900.0), replays=True, publishers=False, jobs=2)
     return {_shorten(one.callback): one for one in answer.report.callbacks}
 
 
 def list_names(name: str) -> list[str]:
     """The callbacks of a workspace, as its sources have them."""
-    return [found for path in _list_sources(name) for found in _CALLBACK.findall(path.read_text())]
+    return [found or "lambda" for path in _list_sources(name) for found in _CALLBACK.findall(path.read_text())]
 
 
 def list_marked(name: str) -> dict[str, set[tuple[CrashKind, int]]]:
@@ -109,8 +107,9 @@ def main(names: list[str]) -> None:
             print(f"{workspace} {name}")
             for line in describe(answer):
                 print(f"  {line}")
-            print(f"{workspace} {name}", [(e.result.value, e.crash, e.place.line, e.confirmed, e.note)
-                                          for e in answer.examples if not e.confirmed or e.crash], file=sys.stderr)  # fmt: skip
+            for one in answer.examples:
+                if not one.confirmed:
+                    print(f"{workspace} {name}: not confirmed: {one.result.value} {one.note}", file=sys.stderr)
 
 
 if __name__ == "__main__":

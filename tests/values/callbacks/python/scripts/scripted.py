@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Callbacks of rospy: what Python raises, what is caught, state, a match, a node whose parameters are not known."""
+
 import rospy
 from sensor_msgs.msg import JointState, LaserScan
 from std_msgs.msg import Float64, Int32, String, UInt8
@@ -59,7 +60,7 @@ class Scripted:
             self.pub.publish(1)
 
     def on_joints(self, msg):
-        for name, position in zip(msg.name, msg.position):
+        for name, position in zip(msg.name, msg.position):  # noqa: B905
             if name == "arm" and position > 0.0:
                 self.pub.publish(1)
 

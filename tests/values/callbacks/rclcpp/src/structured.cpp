@@ -61,11 +61,7 @@ public:
       "lambda", 1, [this](const std_msgs::msg::Int32::SharedPtr msg) {
         if (msg->data == 4) send(1000 / (msg->data - 4));  // lambda DIVISION
       }));
-    add(create_subscription<geometry_msgs::msg::Twist>(
-      "twist", 1, [this](geometry_msgs::msg::Twist::UniquePtr msg) {
-        if (msg->linear.x > 0.5) send(1);
-        else if (msg->linear.x < -0.5) RCLCPP_WARN(get_logger(), "backwards");
-      }));
+    add(create_subscription<geometry_msgs::msg::Twist>("twist", 1, std::bind(&Structured::onTwist, this, _1)));
   }
 
 private:
@@ -139,6 +135,11 @@ private:
   {
     if (msg->data > limit_) return;
     send(msg->data);
+  }
+  void onTwist(geometry_msgs::msg::Twist::UniquePtr msg)
+  {
+    if (msg->linear.x > 0.5) send(1);
+    else if (msg->linear.x < -0.5) RCLCPP_WARN(get_logger(), "backwards");
   }
   int takeFirst() { return queue_.empty() ? 0 : queue_.front(); }
 

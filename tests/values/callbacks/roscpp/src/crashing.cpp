@@ -140,11 +140,11 @@ private:
   }
   void onEndless(const std_msgs::UInt8::ConstPtr &msg)
   {
-    uint8_t left = msg->data;
+    volatile uint8_t left = msg->data;
     while (left != 0)
     {
       if (left > 3) continue;  // onEndless ENDLESS
-      --left;
+      left = left - 1;
     }
     send(1);
   }
@@ -156,7 +156,7 @@ private:
   void onCounted(const std_msgs::UInt8::ConstPtr &msg)
   {
     if (++count_ == 3) assert(msg->data < 10);  // onCounted ASSERTION
-    if (count_ > 5) send(count_);
+    if (count_ > 5) send(1);
   }
   void onFrame(const geometry_msgs::PointStamped::ConstPtr &msg)
   {
@@ -180,7 +180,7 @@ private:
   std::list<ros::Subscriber> all_;
   tf2_ros::Buffer buffer_;
   tf2_ros::TransformListener listener_;
-  int count_ = 0;
+  unsigned count_ = 0;
 };
 
 int main(int argc, char **argv)
