@@ -10,7 +10,7 @@ from ...edges.console import format_count, format_json
 from ..analysis.values import ValuesAnswer
 from ..values.answers import CallbackAnswer, CallbackExample, FieldSets, read_example
 from ..values.harness.replay import Replayed
-from ..values.matching import SEVERITIES, Mismatch
+from ..values.matching import CRASHING, FRAME, IMPOSSIBLE, SIZE, Mismatch
 from ..values.outcomes import Bounds, CodeLine, CrashKind, InputKind, Reaction
 from ..values.projection import FieldValues, format_values
 from ..values.witnesses import WitnessRecord
@@ -136,32 +136,36 @@ def _spell(value: Any) -> str:
 
 
 def _render_mismatch(one: Mismatch, style: Style) -> Iterator[str]:
-    severity = SEVERITIES[one.kind]
+    severity = one.severity
     pieces = [LinePart(f"{severity}[{one.kind}]", severity), LinePart(one.topic, "bold"), LinePart(_explain(one))]
     yield from lay_out(pieces, style, 0, 4)
-    if one.sender is not None and one.sender.places:
-        place = one.sender.places[0]
-        yield from lay_out(
-            [LinePart("sent by"), LinePart(one.sender.callback), LinePart("", "dim", f"{place.path}:{place.line}")],
-            style,
-            4,
-            8,
-        )
-    place = f"{one.subscriber.path}:{one.subscriber.line}"
-    yield from lay_out(
-        [LinePart("received by"), LinePart(one.subscriber.callback), LinePart("", "dim", place)], style, 4, 8
-    )
+    for hop in one.sender.via if one.sender is not None else ():
+        yield from _render_end(f"first sent on {hop.topic} by", hop.callback, hop.place, style)
+    if one.sender is not None:
+        yield from _render_end("sent by", one.sender.callback, one.sender.places[0], style)
+    received = CodeLine(one.subscriber.path, one.subscriber.line)
+    yield from _render_end("received by", one.subscriber.callback, received, style)
     if one.example is not None:
         yield from (f"  {line}" for line in _render_example(one.example, style))
+    elif one.place is not None:
+        yield from _render_end("there", one.why, one.place, style)
+
+
+def _render_end(what: str, callback: str, place: CodeLine, style: Style) -> Iterator[str]:
+    pieces = [LinePart(what), LinePart(callback), LinePart("", "dim", f"{place.path}:{place.line}")]
+    yield from lay_out(pieces, style, 4, 8)
 
 
 def _explain(one: Mismatch) -> str:
-    if one.kind == "crashing-value":
-        return f"`{one.field}` {'is' if one.sure else 'may be'} sent as {one.values}, which crashes a subscriber"
-    if one.kind == "impossible-branch":
+    word = "is" if one.sure else "may be"
+    if one.kind == SIZE:
+        return f"`{one.field.removesuffix('.size')}` {word} sent with {one.values} elements, fewer than a subscriber reads"
+    if one.kind == CRASHING:
+        return f"`{one.field}` {word} sent as {one.values}, which crashes a subscriber"
+    if one.kind == IMPOSSIBLE:
         return f"a subscriber waits for `{one.field}` = {one.values}, which nobody sends"
     what = "ignores" if one.sure else "does not handle"
-    value = f"frame {one.values}" if one.kind == "frame-mismatch" else one.values
+    value = f"frame {one.values}" if one.kind == FRAME else one.values
     return f"`{one.field}` is sent as {value}, which a subscriber {what}"
 
 
@@ -255,12 +259,17 @@ def _describe_example(one: CallbackExample) -> dict[str, Any]:
 
 def _describe_mismatch(one: Mismatch) -> dict[str, Any]:
     return {
-        "rule": one.kind, "severity": SEVERITIES[one.kind], "topic": one.topic, "type": one.message_type,
+        "rule": one.kind, "severity": one.severity, "topic": one.topic, "type": one.message_type,
         "field": one.field, "values": one.values, "sure": one.sure,
         "publisher": None if one.sender is None else {
             "callback": one.sender.callback,
             "places": [{"path": place.path, "line": place.line} for place in one.sender.places],
+            "via": [
+                {"callback": hop.callback, "topic": hop.topic, "path": hop.place.path, "line": hop.place.line}
+                for hop in one.sender.via
+            ],
         },
+        "crash": None if one.place is None else {"kind": one.why, "path": one.place.path, "line": one.place.line},
         "subscriber": {"callback": one.subscriber.callback, "path": one.subscriber.path, "line": one.subscriber.line},
         "example": None if one.example is None else _describe_example(one.example),
     }  # fmt: skip

@@ -57,7 +57,8 @@ class InputKind(enum.Enum):
 class SymbolicInput(NamedTuple):
     """One symbolic value. path: `msg.pose.position.x`, `msg.ranges[2]`, `msg.data.size`, `msg.data[0]` (a byte of a
     text), `this.enabled_` (a member of the node), `~now` (what the callback asks of its surroundings). term: a bit
-    vector of `bits` bits (floats by their IEEE bits). most: largest value of a SIZE, 0 otherwise."""
+    vector of `bits` bits (floats by their IEEE bits). most: largest value of a SIZE, 0 otherwise. default: of a
+    parameter, the value that the code gives it, as a text, a number or a truth value."""
 
     path: str
     kind: InputKind
@@ -65,6 +66,7 @@ class SymbolicInput(NamedTuple):
     is_signed: bool
     term: z3.BitVecRef
     most: int = 0
+    default: str | float | None = None
 
 
 class CodeLine(NamedTuple):

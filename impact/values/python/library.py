@@ -92,6 +92,8 @@ _QUIET = frozenset((
     "cv_bridge.CvBridge", "rclpy.qos.QoSProfile", "rospy.get_namespace", "rospy.get_caller_id",
     "rospy.get_published_topics",
 ))  # fmt: skip
+_ASKS_WHETHER_UP = frozenset(("rospy.is_shutdown", "rclpy.ok"))
+_SLEEPS = frozenset(("rospy.sleep", "time.sleep", "rospy.rostime.wallsleep"))
 _NODE_QUIET = frozenset((
     "get_name", "get_namespace", "declare_parameters", "count_subscribers", "count_publishers", "wait_for_service",
     "get_fully_qualified_name", "get_topic_names_and_types", "get_node_names", "has_parameter", "resolve_topic_name",
@@ -144,6 +146,10 @@ def call_outside(machine: Machine, name: str, given: list[Any], named: dict[str,
         if not machine.is_quiet:
             run.logs.append(name.rpartition(".")[2])
         return None
+    if run.program is not None and name in _ASKS_WHETHER_UP:
+        return run.program.is_up() != (name == "rospy.is_shutdown")
+    if run.program is not None and name in _SLEEPS:
+        run.program.sleep()
     type_ = find_message_type(name)
     if type_:
         return _make_message(machine, type_, given, named)
@@ -536,6 +542,8 @@ def _call_handle_method(machine: Machine, handle: Handle, name: str, given: list
             exception.bases = ("LookupException", "ExtrapolationException", "ConnectivityException", "Exception")
             raise exception
         return Opaque(f"{handle.name}.{name}()")
+    if kind == "rate" and name == "sleep" and run.program is not None:
+        run.program.sleep()
     if kind in ("timer", "subscription", "rate", "server"):
         if name in ("shutdown", "cancel", "reset", "unregister", "destroy") and loud:
             run.note_effect("member", handle.name)

@@ -49,6 +49,32 @@ class PythonThrownError(Exception):
         )
 
 
+class ProgramEndedError(Exception):
+    """A program that runs from its start was followed far enough."""
+
+
+class ProgramRounds:
+    """The loops of a program that runs until somebody stops it: how far they are followed. is_cut: whether one went
+    on."""
+
+    def __init__(self, rounds: int = 3, sleeps: int = 12):
+        self._rounds, self._sleeps = rounds, sleeps
+        self.is_cut = False
+
+    def is_up(self) -> bool:
+        """Whether ROS is up, as a loop asks: for a few rounds."""
+        self._rounds -= 1
+        self.is_cut |= self._rounds < 0
+        return self._rounds >= 0
+
+    def sleep(self) -> None:
+        """Raises ProgramEndedError where the program has slept so often that it is a loop without an end."""
+        self._sleeps -= 1
+        if self._sleeps < 0:
+            self.is_cut = True
+            raise ProgramEndedError
+
+
 class PythonRun:
     """A way that begins with some decisions and goes on by itself. inputs: those of all ways, by path; open_ways: the
     decisions of ways that branch off this one."""
@@ -73,6 +99,8 @@ class PythonRun:
         self.place = NOWHERE
         self.steps = 0
         self._fresh: dict[str, int] = {}
+        self.program: ProgramRounds | None = None
+        """Where what runs is a program from its start, and no callback."""
 
     # Decisions.
 
