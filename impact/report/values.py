@@ -159,7 +159,7 @@ def _render_end(what: str, callback: str, place: CodeLine, style: Style) -> Iter
 def _explain(one: Mismatch) -> str:
     word = "is" if one.sure else "may be"
     if one.kind == SIZE:
-        return f"`{one.field.removesuffix('.size')}` {word} sent with {one.values} elements, fewer than a subscriber reads"
+        return f"arrays {'are' if one.sure else 'may be'} sent with sizes at which a subscriber crashes: {one.values}"
     if one.kind == CRASHING:
         return f"`{one.field}` {word} sent as {one.values}, which crashes a subscriber"
     if one.kind == IMPOSSIBLE:

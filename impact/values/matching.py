@@ -158,7 +158,26 @@ def list_mismatches(
                 found.extend(_list_unhandled(answer, topic, row, judged))
             if publishers.is_complete(topic, rows):
                 found.extend(_list_impossible(answer, topic, rows))
-    return found
+    return _drop_repeats(found)
+
+
+_SEVERITIES = ("note", "warning", "error")
+
+
+def _drop_repeats(found: Iterable[Mismatch]) -> list[Mismatch]:
+    """Each once: a statement that several programs or callbacks run says the same, and what is certain comes first."""
+    kept: dict[tuple[object, ...], Mismatch] = {}
+    for one in found:
+        sender = one.sender
+        values = one.values if one.place is None else ""
+        key = (
+            one.kind, one.topic, one.field, values, one.subscriber.path, one.subscriber.line, one.place,
+            sender.places if sender is not None else (), bool(sender and sender.via),
+        )  # fmt: skip
+        known = kept.get(key)
+        if known is None or _SEVERITIES.index(one.severity) > _SEVERITIES.index(known.severity):
+            kept[key] = one
+    return list(kept.values())
 
 
 def _fits(row: Sender, answer: CallbackAnswer) -> bool:
@@ -305,18 +324,29 @@ def _list_crashes(
         example = _find_example(answer, crash)
         if example is not None and example.confirmed is False:
             continue
-        told = _find_telling(answer, way, crash)
+        sizes = _list_sizes(answer, way, crash) if crash.kind in _BEYOND_END else []
+        told = _find_telling(answer, way, crash) if not sizes else (sizes[0][0], _spell_sizes(sizes))
         if told is None:
             continue
         field, values = told
-        is_size = crash.kind in _BEYOND_END and field.endswith(".size") and not _is_text(answer, field)
         # In rospy, an exception ends the callback, and the node goes on.
         ends_node = not (ros == 1 and answer.language == "python" and crash.kind is not CrashKind.ENDLESS)
         severity = "error" if certain and ends_node else "warning" if certain or _is_fixed(way, crash) else "note"
         yield Mismatch(
-            SIZE if is_size else CRASHING, severity, topic, answer.message_type, field, values, row, answer, example,
+            SIZE if sizes else CRASHING, severity, topic, answer.message_type, field, values, row, answer, example,
             certain, crash.place, crash.kind.value,
         )  # fmt: skip
+
+
+def _list_sizes(answer: CallbackAnswer, way: SentWay, crash: MessageCrash) -> list[tuple[str, int]]:
+    """The arrays on whose sizes a crash depends, the smallest first."""
+    names = [one for one in crash.fields if one.endswith(".size") and not _is_text(answer, one)]
+    found = [(one.removesuffix(".size"), int(way.exact[one])) for one in names if one in way.exact]
+    return sorted(found, key=lambda row: row[1])
+
+
+def _spell_sizes(sizes: Sequence[tuple[str, int]]) -> str:
+    return ", ".join(f"{name} {size}" for name, size in sizes)
 
 
 def _is_fixed(way: SentWay, crash: MessageCrash) -> bool:
@@ -402,7 +432,9 @@ def _list_unhandled(answer: CallbackAnswer, topic: str, row: Sender, judged: _Ve
         one = next(iter(values.values()))[2]
         is_frame = path.rpartition(".")[2] in _FRAMES
         elsewhere = any(each[1] for each in values.values())
-        severity = "warning" if _is_choice(one) and not elsewhere else "note"
+        # What an empty message has is often meant to do nothing.
+        is_plain = not is_frame and values.keys() <= {"0", "False", '""', one.names.get(0, "0")}
+        severity = "warning" if _is_choice(one) and not elsewhere and not is_plain else "note"
         sure = all(each[0] for each in values.values())
         kind = FRAME if is_frame else UNHANDLED
         yield Mismatch(

@@ -217,7 +217,10 @@ def _make_message(machine: Machine, type_: str, given: Sequence[Any], named: dic
 def _make_parameter(machine: Machine, given: Sequence[Any], named: dict[str, Any]) -> Any:
     name = given[0] if given and isinstance(given[0], str) else ""
     default = given[1] if len(given) > 1 else named.get("default")
-    return make_like(machine, f"~param.{name.lstrip('~/')}" if name else machine.run.make_name("~param"), default)
+    path = f"~param.{name.lstrip('~/')}" if name else machine.run.make_name("~param")
+    value = make_like(machine, path, default)
+    machine.run.note_default(path, default)
+    return value
 
 
 def make_like(machine: Machine, path: str, value: Any) -> Any:
@@ -561,6 +564,7 @@ def _call_base(machine: Machine, owner: PythonObject, name: str, given: list[Any
         key = given[0] if given and isinstance(given[0], str) else ""
         default = given[1] if len(given) > 1 else named.get("value")
         value = make_like(machine, f"~param.{key}", default) if key else Opaque("~param")
+        machine.run.note_default(f"~param.{key}", default)
         owner.members.setdefault("~parameters", {})[key] = value
         return Handle("parameter", key, value)
     if name in ("get_parameter", "get_parameter_or"):

@@ -220,6 +220,12 @@ class PythonRun:
             return Real(z3.fpFPToFP(NEAREST, single, FLOAT64), single=single)
         return Real(z3.fpBVToFP(self._get_input(path, InputKind.FLOAT64, 64, True), FLOAT64))
 
+    def note_default(self, path: str, value: Any) -> None:
+        """Keeps what an input is where nobody sets it, where that is a plain value."""
+        known = self.inputs.get(path)
+        if known is not None and isinstance(value, (bool, int, float, str)):
+            self.inputs[path] = known._replace(default=value)
+
     def get_size(self, path: str, most: int) -> Whole:
         """The size of what stands at a path, 0 to most."""
         name = f"{path}.size"
