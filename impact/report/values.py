@@ -10,7 +10,7 @@ from ...edges.console import format_count, format_json
 from ..analysis.values import ValuesAnswer
 from ..values.answers import CallbackAnswer, CallbackExample, FieldSets, read_example
 from ..values.harness.replay import Replayed
-from ..values.matching import CRASHING, FRAME, IMPOSSIBLE, SIZE, Mismatch
+from ..values.matching import CRASHING, FRAME, IMPOSSIBLE, SIZE, UNIT, Mismatch
 from ..values.outcomes import Bounds, CodeLine, CrashKind, InputKind, Reaction
 from ..values.projection import FieldValues, format_values
 from ..values.witnesses import WitnessRecord
@@ -143,12 +143,13 @@ def _render_mismatch(one: Mismatch, style: Style) -> Iterator[str]:
         yield from _render_end(f"first sent on {hop.topic} by", hop.callback, hop.place, style)
     if one.sender is not None:
         yield from _render_end("sent by", one.sender.callback, one.sender.places[0], style)
-    received = CodeLine(one.subscriber.path, one.subscriber.line)
-    yield from _render_end("received by", one.subscriber.callback, received, style)
+    if one.subscriber is not None:
+        received = CodeLine(one.subscriber.path, one.subscriber.line)
+        yield from _render_end("received by", one.subscriber.callback, received, style)
     if one.example is not None:
         yield from (f"  {line}" for line in _render_example(one.example, style))
     elif one.place is not None:
-        yield from _render_end("there", one.why, one.place, style)
+        yield from _render_end("there", one.why if one.kind != UNIT else f"taken as {one.why}", one.place, style)
 
 
 def _render_end(what: str, callback: str, place: CodeLine, style: Style) -> Iterator[str]:
@@ -160,6 +161,9 @@ def _explain(one: Mismatch) -> str:
     word = "is" if one.sure else "may be"
     if one.kind == SIZE:
         return f"arrays {'are' if one.sure else 'may be'} sent with sizes at which a subscriber crashes: {one.values}"
+    if one.kind == UNIT:
+        reader = "a subscriber takes it as" if one.subscriber is not None else "REP-103 says"
+        return f"`{one.field}` is sent in {one.values}; {reader} {one.why}"
     if one.kind == CRASHING:
         return f"`{one.field}` {word} sent as {one.values}, which crashes a subscriber"
     if one.kind == IMPOSSIBLE:
@@ -269,8 +273,10 @@ def _describe_mismatch(one: Mismatch) -> dict[str, Any]:
                 for hop in one.sender.via
             ],
         },
-        "crash": None if one.place is None else {"kind": one.why, "path": one.place.path, "line": one.place.line},
-        "subscriber": {"callback": one.subscriber.callback, "path": one.subscriber.path, "line": one.subscriber.line},
+        "where": None if one.place is None else {"what": one.why, "path": one.place.path, "line": one.place.line},
+        "subscriber": None if one.subscriber is None else {
+            "callback": one.subscriber.callback, "path": one.subscriber.path, "line": one.subscriber.line,
+        },
         "example": None if one.example is None else _describe_example(one.example),
     }  # fmt: skip
 

@@ -5,10 +5,20 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
+from ...edges.memory import cache_in_derived
+from ...edges.processes import count_cores
 from ..model.flow.graph import Graph
+from ..model.flow.workspace import get_flow
+from ..model.workspace import Workspace
 from .answers import CallbackAnswer
-from .matching import Mismatch, list_mismatches
+from .disk import open_sources
+from .matching import UNIT, Mismatch, Sender, list_mismatches
+from .outcomes import Bounds
 from .survey import KINDS, Asked, Progress, Survey, get_key
+from .units import UnitMismatch, list_unit_mismatches
+
+CHECK_BOUNDS = Bounds(text=16, seconds=10.0)
+"""How far checks go: names of frames fit in."""
 
 
 class Joined(NamedTuple):
@@ -43,7 +53,36 @@ def join_publishers(
             break
     mismatches = list_mismatches([*callbacks, *others], graph, survey, survey.workspace.ros, jobs)
     asked = {get_key(one) for one in callbacks}
-    return Joined(tuple(others), tuple(one for one in mismatches if get_key(one.subscriber) in asked))
+    kept = [one for one in mismatches if one.subscriber is not None and get_key(one.subscriber) in asked]
+    units = [_describe_units(one, callbacks) for one in list_unit_mismatches(survey.workspace, graph)]
+    return Joined(tuple(others), (*kept, *(one for one in units if one.topic in received)))
+
+
+def _describe_units(one: UnitMismatch, callbacks: Sequence[CallbackAnswer]) -> Mismatch:
+    """A mismatch of units as those of values are described."""
+    sender = Sender(one.written.function, (one.written.place,), {}, one.type)
+    subscriber = None
+    if one.read is not None:
+        named = [each for each in callbacks if each.callback == one.read.function and one.topic in each.topics]
+        subscriber = named[0] if named else CallbackAnswer(
+            one.read.function, "subscriber", "", one.read.place.path, one.read.place.line, one.type, (one.topic,), (),
+            Bounds(),
+        )  # fmt: skip
+    return Mismatch(
+        UNIT, "warning", one.topic, one.type, one.written.field, one.written.unit, sender, subscriber,
+        place=one.read.place if one.read is not None else None, why=one.expected,
+    )  # fmt: skip
+
+
+@cache_in_derived
+def find_mismatches(workspace: Workspace) -> tuple[Mismatch, ...]:
+    """All mismatches of a workspace, for checks. They are looked for once, on all cores."""
+    graph = get_flow(workspace).system
+    jobs = count_cores()
+    with open_sources(workspace.extraction.tree) as root:
+        with Survey(root, workspace, graph, CHECK_BOUNDS) as survey:
+            report = survey.explore(Asked(), jobs=jobs)
+            return join_publishers(survey, report.callbacks, jobs).mismatches
 
 
 def list_starting_places(survey: Survey, graph: Graph, topics: Collection[str]) -> frozenset[tuple[str, int]]:

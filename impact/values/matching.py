@@ -48,8 +48,9 @@ class Sender(NamedTuple):
 class Mismatch:
     """A value that one side sends and the other does not handle. kind: the name of a rule. severity: error, warning or
     note. values: as text. sure: of a crash, that this very message leads to it, whatever else holds; of a value that is
-    not handled, that nothing at all follows, not even a line in the log. place: of the crash. why: what crashes, or
-    which units meet. ends_node: whether a crash ends the node."""
+    not handled, that nothing at all follows, not even a line in the log. subscriber: None where it is the standard alone
+    that a value goes against. place: of the crash, or of what reads a unit. why: what crashes, or what the unit should
+    be."""
 
     kind: str
     severity: str
@@ -58,7 +59,7 @@ class Mismatch:
     field: str
     values: str
     sender: Sender | None
-    subscriber: CallbackAnswer
+    subscriber: CallbackAnswer | None
     example: CallbackExample | None = None
     sure: bool = True
     place: CodeLine | None = None
@@ -171,7 +172,7 @@ def _drop_repeats(found: Iterable[Mismatch]) -> list[Mismatch]:
         sender = one.sender
         values = one.values if one.place is None else ""
         key = (
-            one.kind, one.topic, one.field, values, one.subscriber.path, one.subscriber.line, one.place,
+            one.kind, one.topic, one.field, values, one.subscriber and get_key(one.subscriber), one.place,
             sender.places if sender is not None else (), bool(sender and sender.via),
         )  # fmt: skip
         known = kept.get(key)
