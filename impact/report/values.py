@@ -9,6 +9,7 @@ from typing import Any
 from ...edges.console import format_count, format_json
 from ..analysis.values import ValuesAnswer
 from ..values.answers import CallbackAnswer, CallbackExample, FieldSets, read_example
+from ..values.comparing import CALLBACK
 from ..values.harness.replay import Replayed
 from ..values.matching import CRASHING, FRAME, IMPOSSIBLE, SIZE, UNIT, Mismatch
 from ..values.outcomes import Bounds, CodeLine, CrashKind, InputKind, Reaction
@@ -25,7 +26,10 @@ _SHOWN = (Reaction.HANDLED, Reaction.LOG_ONLY, Reaction.IGNORED, Reaction.CRASH)
 
 
 def render_values_text(answer: ValuesAnswer, everything: bool = False, style: Style = WIDE) -> str:
-    """The callbacks with the values of their fields, then what does not fit together. everything: no list is cut."""
+    """The callbacks with the values of their fields, then what does not fit together; with a base, what changed since.
+    everything: no list is cut."""
+    if answer.base:
+        return _render_changes(answer, style)
     lines: list[str] = []
     for callback in answer.report.callbacks:
         if everything or not callback.reason:
@@ -36,6 +40,28 @@ def render_values_text(answer: ValuesAnswer, everything: bool = False, style: St
         lines.append("")
     lines += _render_reasons(answer, everything, style)
     lines += lay_out([LinePart(summarize_values(answer))], style, 0, 2)
+    lines += lay_out([LinePart(_describe_bounds(answer.report.bounds), "dim")], style, 0, 2)
+    return "\n".join(lines) + "\n"
+
+
+def _render_changes(answer: ValuesAnswer, style: Style) -> str:
+    """The sets that changed since the base, callback by callback."""
+    lines: list[str] = []
+    last = ("", "", 0)
+    for one in answer.changes:
+        if (one.callback, one.path, one.line) != last:
+            last = (one.callback, one.path, one.line)
+            pieces = [LinePart(one.callback, "bold"), LinePart("", "dim", f"{one.path}:{one.line}")]
+            lines += lay_out(pieces, style, 0, 4)
+        if one.what == CALLBACK:
+            lines += lay_out([LinePart(f"the callback is {one.new}")], style, 2, 6)
+            continue
+        role = next((_ROLES[each] for each in _SHOWN if each.value == one.what), "note")
+        pieces = [LinePart(" ".join(part for part in (one.topic, one.field) if part)), LinePart(one.what, role)]
+        pieces += [LinePart(f"was {one.old or 'nothing'}"), LinePart(f"is {one.new or 'nothing'}")]
+        lines += lay_out(pieces, style, 2, 6)
+    count = format_count(len([one for one in answer.changes if one.what != CALLBACK]), "set")
+    lines += lay_out([LinePart(f"{count} of values changed since {answer.base}")], style, 0, 2)
     lines += lay_out([LinePart(_describe_bounds(answer.report.bounds), "dim")], style, 0, 2)
     return "\n".join(lines) + "\n"
 
@@ -206,6 +232,8 @@ def render_values_json(answer: ValuesAnswer, version: str) -> str:
         "offline": answer.report.is_offline,
         "callbacks": [_describe_callback(one) for one in answer.report.callbacks],
         "mismatches": [_describe_mismatch(one) for one in answer.mismatches],
+        "base": answer.base,
+        "changes": [one._asdict() for one in answer.changes],
     }  # fmt: skip
     return format_json(document) + "\n"
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
 import z3
 
 from .answers import CallbackExample, FieldSets, SentThrough, SentValues
-from .narrowing import GivenMessage, ParameterValues, list_sent_ways, narrow_to_parameters
+from .narrowing import ParameterValues, list_sent_ways, narrow_to_parameters
 from .outcomes import CallbackPath, CodeLine, Exploration, InputKind, Reaction, Sent, SymbolicInput
 from .projection import FieldValues, make_witness, project_fields
 from .sent_values import project_sent_number
@@ -91,11 +91,8 @@ def _list_examples(exploration: Exploration) -> list[CallbackExample]:
     return sorted(found.values(), key=lambda one: (one.result is not Reaction.CRASH, one.place))
 
 
-def list_sent(
-    exploration: Exploration, seconds: float, messages: Sequence[GivenMessage] = ()
-) -> list[SentThrough]:
-    """Per publisher, the values of each field over all ways that publish through it. messages: those that the
-    exploration is narrowed to, if it is."""
+def list_sent(exploration: Exploration, seconds: float) -> list[SentThrough]:
+    """Per publisher and statement, the values of each field over all ways that publish through it."""
     ways: dict[tuple[str, CodeLine], list[tuple[CallbackPath, Sent]]] = {}
     for path in exploration.paths:
         for one in path.sent:
@@ -114,7 +111,7 @@ def list_sent(
                 name = path if path in kinds else f"{path}.size"
                 everywhere = all(name in one.values for _, one in rows)
                 fields.append(SentValues(path, *kind, values, is_whole and everywhere))
-        exact, is_listed = list_sent_ways(exploration, rows, messages)
+        exact, is_listed = list_sent_ways(exploration, rows)
         found.append(SentThrough(publisher, (place,), tuple(fields), exact, is_listed))
     return found
 

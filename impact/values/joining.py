@@ -54,12 +54,17 @@ def join_publishers(
     mismatches = list_mismatches([*callbacks, *others], graph, survey, survey.workspace.ros, jobs)
     asked = {get_key(one) for one in callbacks}
     kept = [one for one in mismatches if one.subscriber is not None and get_key(one.subscriber) in asked]
-    units = [_describe_units(one, callbacks) for one in list_unit_mismatches(survey.workspace, graph)]
-    return Joined(tuple(others), (*kept, *(one for one in units if one.topic in received)))
+    return Joined(tuple(others), tuple(kept))
 
 
-def _describe_units(one: UnitMismatch, callbacks: Sequence[CallbackAnswer]) -> Mismatch:
-    """A mismatch of units as those of values are described."""
+def describe_units(
+    workspace: Workspace, graph: Graph, callbacks: Sequence[CallbackAnswer] = ()
+) -> list[Mismatch]:  # fmt: skip
+    """All mismatches of units, as those of values are described. callbacks: those that were explored."""
+    return [_describe_unit(one, callbacks) for one in list_unit_mismatches(workspace, graph)]
+
+
+def _describe_unit(one: UnitMismatch, callbacks: Sequence[CallbackAnswer]) -> Mismatch:
     sender = Sender(one.written.function, (one.written.place,), {}, one.type)
     subscriber = None
     if one.read is not None:
@@ -75,14 +80,19 @@ def _describe_units(one: UnitMismatch, callbacks: Sequence[CallbackAnswer]) -> M
 
 
 @cache_in_derived
+def find_unit_mismatches(workspace: Workspace) -> tuple[Mismatch, ...]:
+    """All mismatches of units of a workspace, for checks; nothing is explored for them."""
+    return tuple(describe_units(workspace, get_flow(workspace).system))
+
+
+@cache_in_derived
 def find_mismatches(workspace: Workspace) -> tuple[Mismatch, ...]:
     """All mismatches of a workspace, for checks. They are looked for once, on all cores."""
     graph = get_flow(workspace).system
     jobs = count_cores()
-    with open_sources(workspace.extraction.tree) as root:
-        with Survey(root, workspace, graph, CHECK_BOUNDS) as survey:
-            report = survey.explore(Asked(), jobs=jobs)
-            return join_publishers(survey, report.callbacks, jobs).mismatches
+    with open_sources(workspace.extraction.tree) as root, Survey(root, workspace, graph, CHECK_BOUNDS) as survey:
+        report = survey.explore(Asked(), jobs=jobs)
+        return join_publishers(survey, report.callbacks, jobs).mismatches
 
 
 def list_starting_places(survey: Survey, graph: Graph, topics: Collection[str]) -> frozenset[tuple[str, int]]:

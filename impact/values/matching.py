@@ -31,8 +31,9 @@ class Hop(NamedTuple):
 
 
 class Sender(NamedTuple):
-    """One statement that publishes on a topic: the callback that it runs in, where it is, and what it can send. via: who
-    sent what the callback received; empty where that may be anybody. key: of the callback."""
+    """One statement that publishes on a topic: the callback that it runs in, where it is, and what it can send. ways:
+    the messages with what is exact of them; is_listed: whether these are all. via: who sent what the callback received;
+    empty where that may be anybody. key: of the callback."""
 
     callback: str
     places: tuple[CodeLine, ...]
@@ -48,9 +49,8 @@ class Sender(NamedTuple):
 class Mismatch:
     """A value that one side sends and the other does not handle. kind: the name of a rule. severity: error, warning or
     note. values: as text. sure: of a crash, that this very message leads to it, whatever else holds; of a value that is
-    not handled, that nothing at all follows, not even a line in the log. subscriber: None where it is the standard alone
-    that a value goes against. place: of the crash, or of what reads a unit. why: what crashes, or what the unit should
-    be."""
+    not handled, that nothing at all follows, not even a line in the log. subscriber: None where a value goes against
+    the standard alone. place: of the crash, or of what reads a unit. why: what crashes, or what the unit should be."""
 
     kind: str
     severity: str
@@ -249,9 +249,7 @@ def _add_senders(
     for one in sent:
         for topic in _list_common_topics(one, publishers):
             rows = found.setdefault(topic, [])
-            known = {
-                _spell_exact(way) for row in rows if row.places == one.places and not row.via for way in row.ways
-            }
+            known = {_spell_exact(way) for row in rows if row.places == one.places and not row.via for way in row.ways}
             ways = tuple(way for way in one.ways if not via or _spell_exact(way) not in known)
             if ways:
                 rows.append(_make_sender(answer, replace(one, ways=ways), publishers, via))
@@ -341,7 +339,9 @@ def _list_crashes(
 
 def _list_sizes(answer: CallbackAnswer, way: SentWay, crash: MessageCrash) -> list[tuple[str, int]]:
     """The arrays on whose sizes a crash depends, the smallest first."""
-    names = [one for one in crash.fields if one.endswith(".size") and not _is_text(answer, one)]
+    every = ((0, answer.bounds.array),)
+    free = {one.path for one in answer.fields if Reaction.CRASH in one.sets and one.sets[Reaction.CRASH].spans == every}
+    names = [one for one in crash.fields if one.endswith(".size") and not _is_text(answer, one) and one not in free]
     found = [(one.removesuffix(".size"), int(way.exact[one])) for one in names if one in way.exact]
     return sorted(found, key=lambda row: row[1])
 

@@ -72,7 +72,19 @@ def narrow_to_messages(
         if found is None:
             return None
         terms.append(_join_all(found[0]))
-    return _narrow(exploration, z3.Or(*terms), seconds)  # pyright: ignore[reportArgumentType]
+    narrowed = _narrow(exploration, z3.Or(*terms), seconds)  # pyright: ignore[reportArgumentType]
+    return replace(narrowed, fixed=_list_fixed(exploration.inputs, messages[0])) if len(messages) == 1 else narrowed
+
+
+def _list_fixed(inputs: Mapping[str, SymbolicInput], message: GivenMessage) -> dict[str, int]:
+    """Inputs that a message fixes, with their bits."""
+    found: dict[str, int] = {}
+    for path, one in inputs.items():
+        value = message.exact.get(path.removeprefix(_MESSAGE)) if path.startswith(_MESSAGE) else None
+        bits = _encode(one, value) if value is not None else None
+        if bits is not None:
+            found[path] = bits
+    return found
 
 
 def narrow_to_parameters(exploration: Exploration, values: ParameterValues | None, seconds: float = 5.0) -> Exploration:
@@ -81,15 +93,26 @@ def narrow_to_parameters(exploration: Exploration, values: ParameterValues | Non
     if values is None:
         return exploration
     terms: list[z3.BoolRef] = []
+    fixed: dict[str, int] = {}
     for path, one in exploration.inputs.items():
         if path.startswith(_PARAMETER):
             name, is_set = path.removeprefix(_PARAMETER), False
             if name.endswith(".set"):
                 name, is_set = name.removesuffix(".set"), True
-            term = _constrain_parameter(exploration.inputs, one, values.get(name, (None,)), is_set)
+            given = values.get(name, (None,))
+            term = _constrain_parameter(exploration.inputs, one, given, is_set)
             if term is not None:
                 terms.append(term)
-    return _narrow(exploration, _join_all(terms), seconds) if terms else exploration
+                if len(given) == 1:
+                    fixed[path] = int(given[0] is not None) if is_set else _fix_parameter(one, given[0])
+    return replace(_narrow(exploration, _join_all(terms), seconds), fixed=fixed) if terms else exploration
+
+
+def _fix_parameter(one: SymbolicInput, value: str | float | None) -> int:
+    """The bits of a parameter that is set to a value, or left for its default; of no account where a flag says that it
+    is not set."""
+    known = one.default if value is None else value
+    return (_encode(one, known) or 0) if isinstance(known, (int, float)) else 0
 
 
 def judge_message(exploration: Exploration, message: GivenMessage, seconds: float = 5.0) -> Outcome:
@@ -119,17 +142,10 @@ def judge_message(exploration: Exploration, message: GivenMessage, seconds: floa
 
 
 def list_sent_ways(
-    exploration: Exploration, rows: Iterable[tuple[CallbackPath, Sent]], messages: Sequence[GivenMessage] = ()
+    exploration: Exploration, rows: Iterable[tuple[CallbackPath, Sent]]
 ) -> tuple[tuple[SentWay, ...], bool]:
-    """The messages that some ways send, as far as their fields have one value each; and whether these are all. messages:
-    those that the exploration is narrowed to: of a single one, what is calculated from it is known too."""
-    exact: dict[str, int] = {}
-    if len(messages) == 1:
-        for path, one in exploration.inputs.items():
-            value = messages[0].exact.get(path.removeprefix(_MESSAGE)) if path.startswith(_MESSAGE) else None
-            bits = _encode(one, value) if value is not None else None
-            if bits is not None:
-                exact[path] = bits
+    """The messages that some ways send, as far as their fields have one value each; and whether these are all."""
+    exact = exploration.fixed
     solving = make_solving(exploration, time.monotonic() + 2.0)
     found: dict[tuple[object, ...], SentWay] = {}
     is_listed = True
@@ -283,4 +299,3 @@ def _constrain_parameter(
         term = one.term == bits
         parts.append(term if flag is None else z3.And(flag.term == 1, term))  # pyright: ignore[reportArgumentType]
     return z3.Or(*parts) if parts else None  # pyright: ignore[reportReturnType]
-

@@ -382,7 +382,8 @@ def _refuse(callback: CppCallback) -> str:
         return f"{place}: the callback is not known"
     if callback.kind in ("service", "action"):
         return f"{place}: callbacks of a {callback.kind} in Python are not explored"
-    return "" if callback.message_type or callback.kind in ("timer", "main") else f"{place}: the type of its message is not known"
+    is_known = callback.message_type or callback.kind in ("timer", "main")
+    return "" if is_known else f"{place}: the type of its message is not known"
 
 
 def _explore_target(
@@ -419,10 +420,13 @@ def _judge_target(
     if not request.is_joined:
         return Judged(outcomes, (), None)
     sending = narrow_to_parameters(found, target.parameters)
+    fixed = sending.fixed
     sent: list[tuple[SentThrough, ...]] = []
     for one in request.messages:
         narrowed = narrow_to_messages(sending, [one])
-        sent.append(tuple(list_sent(narrowed, 3.0, [one])) if narrowed is not None else ())
+        if narrowed is not None:
+            narrowed = replace(narrowed, fixed={**fixed, **narrowed.fixed})
+        sent.append(tuple(list_sent(narrowed, 3.0)) if narrowed is not None else ())
     together = narrow_to_messages(sending, request.messages)
     return Judged(outcomes, tuple(sent), None if together is None else tuple(list_sent(together, 5.0)))
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from ...values.joining import find_mismatches
+from ...values.joining import find_mismatches, find_unit_mismatches
 from ...values.matching import UNIT, Mismatch
 from ..vocabulary import At, Diagnostic, Doubt, Value, Workspace
 
@@ -12,7 +12,7 @@ _DOUBTS = {"error": (), "warning": (Doubt.INCOMPLETE,), "note": (Doubt.UNCHECKED
 def find_of_kind(workspace: Workspace, kind: str) -> Iterator[Diagnostic]:
     """The mismatches of a rule. A crash is reported where it happens, what waits for a value where it waits, and all
     else where it is sent."""
-    for one in find_mismatches(workspace):
+    for one in find_unit_mismatches(workspace) if kind == UNIT else find_mismatches(workspace):
         if one.kind != kind:
             continue
         path, line = _find_place(one)

@@ -8,7 +8,8 @@ Why it breaks
     The node reads past the end of the array, or ends with an exception.
 
 Severity
-    error where the publisher sends these very sizes, warning where more is needed for it, note where they are calculated.
+    error where the publisher sends these very sizes, warning where more is needed for it, note where they are
+    calculated.
 
 Example
     for (size_t i = 0; i < msg->name.size(); ++i)

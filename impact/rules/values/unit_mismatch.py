@@ -3,7 +3,8 @@
 What it does
     Reports an assignment to a field of a message that is published, whose unit is known by a name (`yaw_deg`,
     `distance_mm`) or by a conversion (`math.degrees()`, `* 180 / M_PI`, `* 1000`), and differs from the unit that a
-    subscriber of the workspace takes the field to have, by the same signs, or that REP-103 gives it.
+    subscriber of the workspace takes the field to have, by the same signs, or that REP-103 gives it. This
+    takes no exploration.
 
 Why it matters
     The robot turns 57 times as far, or drives 1000 times as far, as it should.

@@ -64,8 +64,10 @@ def list_callbacks(workspace: Workspace, graph: Graph, language: str) -> list[Cp
     ends = group_pairs(((one.role, one.path, one.line), one) for one in graph.endpoints)
     found: dict[tuple[str, str, int, str], CppCallback] = {}
     rows = (
-        *_list_endpoints(join, ends, language), *_list_timers(join, graph, language), *_list_mains(join, graph, language)
-    )  # fmt: skip
+        *_list_endpoints(join, ends, language),
+        *_list_timers(join, graph, language),
+        *_list_mains(join, graph, language),
+    )
     for each in rows:
         found.setdefault((each.kind, each.path, each.line, each.name), each)
     return sorted(found.values(), key=lambda each: (each.path, each.line, each.kind, each.name))
