@@ -184,14 +184,15 @@ def _render_end(what: str, callback: str, place: CodeLine, style: Style) -> Iter
 
 
 def _explain(one: Mismatch) -> str:
-    word = "is" if one.sure else "may be"
+    word = "is" if one.is_sent else "may be"
+    crashes = "crashes" if one.sure else "may crash"
     if one.kind == SIZE:
-        return f"arrays {'are' if one.sure else 'may be'} sent with sizes at which a subscriber crashes: {one.values}"
+        return f"arrays {'are' if one.is_sent else 'may be'} sent with sizes at which a subscriber {crashes}: {one.values}"
     if one.kind == UNIT:
         reader = "a subscriber takes it as" if one.subscriber is not None else "REP-103 says"
         return f"`{one.field}` is sent in {one.values}; {reader} {one.why}"
     if one.kind == CRASHING:
-        return f"`{one.field}` {word} sent as {one.values}, which crashes a subscriber"
+        return f"`{one.field}` {word} sent as {one.values}, at which a subscriber {crashes}"
     if one.kind == IMPOSSIBLE:
         return f"a subscriber waits for `{one.field}` = {one.values}, which nobody sends"
     what = "ignores" if one.sure else "does not handle"

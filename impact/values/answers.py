@@ -60,11 +60,13 @@ class SentValues:
 class SentWay(NamedTuple):
     """A message that a callback publishes on one way. exact: the values of fields that are the same whatever comes in,
     by path; sizes as `path.size`, bytes of texts as `path[0]`. is_assumed: something was taken for granted on the way.
+    asks: inputs on which it depends whether the way is taken: of the message that came in, of the node's state.
     """
 
     exact: Mapping[str, int | float]
     place: CodeLine
     is_assumed: bool
+    asks: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)

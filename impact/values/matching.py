@@ -18,6 +18,7 @@ UNHANDLED, CRASHING, IMPOSSIBLE = "unhandled-value", "crashing-value", "impossib
 FRAME, SIZE, UNIT = "frame-mismatch", "size-mismatch", "unit-mismatch"
 _FRAMES = ("frame_id", "child_frame_id")
 _MOST_MESSAGES = 24
+_SEVERITIES = ("note", "warning", "error")
 _MOST_LISTED = 32
 _BEYOND_END = (CrashKind.INDEX, CrashKind.EMPTY)
 
@@ -49,7 +50,8 @@ class Sender(NamedTuple):
 class Mismatch:
     """A value that one side sends and the other does not handle. kind: the name of a rule. severity: error, warning or
     note. values: as text. sure: of a crash, that this very message leads to it, whatever else holds; of a value that is
-    not handled, that nothing at all follows, not even a line in the log. subscriber: None where a value goes against
+    not handled, that nothing at all follows, not even a line in the log. is_sent: the publisher sends it without being
+    asked, or because of what it is known to receive. subscriber: None where a value goes against
     the standard alone. place: of the crash, or of what reads a unit. why: what crashes, or what the unit should be."""
 
     kind: str
@@ -64,6 +66,7 @@ class Mismatch:
     sure: bool = True
     place: CodeLine | None = None
     why: str = ""
+    is_sent: bool = True
 
 
 class Publishers:
@@ -162,9 +165,6 @@ def list_mismatches(
     return _drop_repeats(found)
 
 
-_SEVERITIES = ("note", "warning", "error")
-
-
 def _drop_repeats(found: Iterable[Mismatch]) -> list[Mismatch]:
     """Each once: a statement that several programs or callbacks run says the same, and what is certain comes first."""
     kept: dict[tuple[object, ...], Mismatch] = {}
@@ -226,6 +226,7 @@ def _follow_one_hop(
         is_closed = all(
             publishers.is_complete(topic, senders.get(topic, []))
             and all(row.is_listed and row.key != key for row in senders.get(topic, []))
+            and all(field.is_known for row in senders.get(topic, []) for field in row.fields.values())
             for topic in answer.topics
         )
         if is_closed and one.together is not None:
@@ -249,7 +250,13 @@ def _add_senders(
     for one in sent:
         for topic in _list_common_topics(one, publishers):
             rows = found.setdefault(topic, [])
-            known = {_spell_exact(way) for row in rows if row.places == one.places and not row.via for way in row.ways}
+            known = {
+                _spell_exact(way)
+                for row in rows
+                if row.places == one.places and not row.via
+                for way in row.ways
+                if _is_sent_surely(way)
+            }
             ways = tuple(way for way in one.ways if not via or _spell_exact(way) not in known)
             if ways:
                 rows.append(_make_sender(answer, replace(one, ways=ways), publishers, via))
@@ -311,15 +318,16 @@ def _list_crashes(
     answer: CallbackAnswer, topic: str, row: Sender, judged: _Verdicts, ros: int
 ) -> Iterator[Mismatch]:  # fmt: skip
     """Crashes of a subscriber that messages of a publisher lead to, each once."""
-    found: dict[tuple[CrashKind, CodeLine], tuple[bool, SentWay, MessageCrash]] = {}
+    found: dict[tuple[CrashKind, CodeLine], tuple[str, SentWay, MessageCrash]] = {}
     for way in row.ways:
         outcome = judged.find(answer, way)
         for crash in outcome.crashes if outcome is not None else ():
-            certain = crash.is_certain and not way.is_assumed
+            # Whether it crashes depends on more than the message, or whether the message is sent does.
+            severity = "note" if not crash.is_certain else "error" if _is_sent_surely(way) else "warning"
             known = found.get((crash.kind, crash.place))
-            if known is None or (certain and not known[0]):
-                found[crash.kind, crash.place] = certain, way, crash
-    for certain, way, crash in found.values():
+            if known is None or _SEVERITIES.index(severity) > _SEVERITIES.index(known[0]):
+                found[crash.kind, crash.place] = severity, way, crash
+    for severity, way, crash in found.values():
         example = _find_example(answer, crash)
         if example is not None and example.confirmed is False:
             continue
@@ -329,12 +337,17 @@ def _list_crashes(
             continue
         field, values = told
         # In rospy, an exception ends the callback, and the node goes on.
-        ends_node = not (ros == 1 and answer.language == "python" and crash.kind is not CrashKind.ENDLESS)
-        severity = "error" if certain and ends_node else "warning" if certain or _is_fixed(way, crash) else "note"
+        goes_on = ros == 1 and answer.language == "python" and crash.kind is not CrashKind.ENDLESS
         yield Mismatch(
-            SIZE if sizes else CRASHING, severity, topic, answer.message_type, field, values, row, answer, example,
-            certain, crash.place, crash.kind.value,
+            SIZE if sizes else CRASHING, "warning" if goes_on and severity == "error" else severity, topic,
+            answer.message_type, field, values, row, answer, example, crash.is_certain, crash.place, crash.kind.value,
+            _is_sent_surely(way),
         )  # fmt: skip
+
+
+def _is_sent_surely(way: SentWay) -> bool:
+    """Whether a publisher sends a message without being asked, or because of what it is known to receive."""
+    return not way.is_assumed and not way.asks
 
 
 def _list_sizes(answer: CallbackAnswer, way: SentWay, crash: MessageCrash) -> list[tuple[str, int]]:
@@ -348,15 +361,6 @@ def _list_sizes(answer: CallbackAnswer, way: SentWay, crash: MessageCrash) -> li
 
 def _spell_sizes(sizes: Sequence[tuple[str, int]]) -> str:
     return ", ".join(f"{name} {size}" for name, size in sizes)
-
-
-def _is_fixed(way: SentWay, crash: MessageCrash) -> bool:
-    """Whether a publisher itself says all that a crash asks of a message."""
-    return bool(crash.fields) and all(field in way.exact or _is_element(field) for field in crash.fields)
-
-
-def _is_element(field: str) -> bool:
-    return field.endswith("]")
 
 
 def _find_example(answer: CallbackAnswer, crash: MessageCrash) -> CallbackExample | None:

@@ -155,14 +155,38 @@ def list_sent_ways(
             known = value if isinstance(value, int) else _evaluate_exact(solving, value, exact)
             if known is not None:
                 values[name] = read_number(*sent.kinds[name], known)
-        way = SentWay(values, sent.place, bool(path.assumed) or path.result is Reaction.UNKNOWN)
+        asked = _list_asked(solving, path, exact)
+        way = SentWay(values, sent.place, bool(path.assumed) or path.result is Reaction.UNKNOWN, asked)
         key = (tuple(sorted((name, repr(value)) for name, value in values.items())), sent.place)
         known_way = found.get(key)
         if known_way is None and len(found) >= _MOST_WAYS:
             is_listed = False
-        elif known_way is None or known_way.is_assumed:
+        elif known_way is None or (known_way.is_assumed, len(known_way.asks)) > (way.is_assumed, len(way.asks)):
             found[key] = way
     return tuple(found.values()), is_listed
+
+
+def _list_asked(solving: Solving, path: CallbackPath, exact: Mapping[str, int]) -> frozenset[str]:
+    """The inputs on which it depends whether a way is taken, but for those that are fixed and what surrounds a node."""
+    found: set[str] = set()
+    for condition in path.condition:
+        names = {
+            name
+            for name in solving.find_traits(condition).names
+            if name.startswith((_MESSAGE, "this.", "global.", "request.", _PARAMETER)) and name not in exact
+        }
+        if names and not (len(names) == 1 and _is_bound(solving, condition, next(iter(names)))):
+            found |= names
+    return frozenset(found)
+
+
+def _is_bound(solving: Solving, condition: z3.BoolRef, name: str) -> bool:
+    """Whether a condition says no more of an input than what its kind does: a size within the bounds."""
+    one = solving.inputs.get(name)
+    most = {InputKind.SIZE: one.most, InputKind.BOOLEAN: 1, InputKind.CHARACTER: 127}.get(one.kind) if one else None
+    if most is None or solving.find_traits(condition).names != {name}:
+        return False
+    return all(solving.holds([condition], {name: value}) for value in range(most + 1))
 
 
 def _evaluate_exact(solving: Solving, term: z3.BitVecRef, exact: Mapping[str, int]) -> int | None:

@@ -9,8 +9,9 @@ Why it breaks
     The node ends as soon as the message arrives. In rospy the callback alone ends, and the message is lost.
 
 Severity
-    error where the publisher sends this very message, whatever else holds; warning where that depends on the state of
-    the subscriber or on something that is not known; note where the publisher calculates the value and might.
+    error where the publisher sends this very message without being asked, or because of what it is known to receive,
+    and nothing else decides; warning where what the publisher receives decides, and in rospy; note where the state of
+    the subscriber, or something that is not known, decides.
 
 Example
     rate_ = 1000 / msg->period;      // a publisher leaves period at 0
@@ -34,7 +35,7 @@ from .mismatches import find_of_kind
     preview=True,
     on_request=True,
     texts=Text(
-        "`{topic}` {word} sent with `{subject}` = `{value}` ({sender}), which ends in {crash} here"
+        "`{topic}` {word} sent with `{subject}` = `{value}` ({sender}), which {ends} in {crash} here"
         "[[; first sent at {origin}]]",
         help="test the value before this line, or do not send it",
     ),

@@ -8,8 +8,8 @@ Why it breaks
     The node reads past the end of the array, or ends with an exception.
 
 Severity
-    error where the publisher sends these very sizes, warning where more is needed for it, note where they are
-    calculated.
+    As for crashing-value: error where nothing else decides, warning where what the publisher receives does, note where
+    the state of the subscriber or something that is not known does.
 
 Example
     for (size_t i = 0; i < msg->name.size(); ++i)
@@ -34,7 +34,7 @@ from .mismatches import find_of_kind
     preview=True,
     on_request=True,
     texts=Text(
-        "`{topic}` {word} sent with arrays of these sizes: {value} ({sender}); a longer one is read here"
+        "`{topic}` {word} sent with arrays of these sizes: {value} ({sender}); a longer one {reads} here"
         "[[; first sent at {origin}]]",
         help="compare the sizes before this line, or send all elements",
     ),

@@ -16,7 +16,7 @@ import z3
 
 from . import operators, texts
 from .messages import Messages
-from .modules import Handle, KnownMethod, Outside, PythonClass, PythonFunction, PythonObject, TimeValue
+from .modules import Handle, KnownMethod, ModuleCode, Outside, PythonClass, PythonFunction, PythonObject, TimeValue
 from .terms import (
     FLOAT64,
     ListValue,
@@ -92,6 +92,7 @@ _QUIET = frozenset((
     "cv_bridge.CvBridge", "rclpy.qos.QoSProfile", "rospy.get_namespace", "rospy.get_caller_id",
     "rospy.get_published_topics",
 ))  # fmt: skip
+_PLAIN_NODES = frozenset(("rclpy.node.Node", "rclpy.create_node"))
 _ASKS_WHETHER_UP = frozenset(("rospy.is_shutdown", "rclpy.ok"))
 _SLEEPS = frozenset(("rospy.sleep", "time.sleep", "rospy.rostime.wallsleep"))
 _NODE_QUIET = frozenset((
@@ -153,6 +154,8 @@ def call_outside(machine: Machine, name: str, given: list[Any], named: dict[str,
     type_ = find_message_type(name)
     if type_:
         return _make_message(machine, type_, given, named)
+    if name in _PLAIN_NODES:
+        return _make_plain_node()
     if name in _HANDLES:
         content = given[1] if _HANDLES[name] == "publisher" and len(given) > 1 else named.get("data_class")
         about = find_message_type(content.name) if isinstance(content, Outside) else ""
@@ -193,6 +196,13 @@ def call_outside(machine: Machine, name: str, given: list[Any], named: dict[str,
         return PythonThrownError(own.__name__, "", run.place)
     run.not_modelled[f"{name}()"] = None
     return Opaque(f"{name}()")
+
+
+def _make_plain_node() -> PythonObject:
+    """A node that is no object of an own class."""
+    plain = ast.ClassDef(name="Node", bases=[], keywords=[], body=[], decorator_list=[])
+    module = ModuleCode("rclpy.node", "", ast.Module(body=[], type_ignores=[]), is_loaded=True)
+    return PythonObject(PythonClass(plain, module, (Outside("rclpy.node.Node"),), {}))
 
 
 def _compute_outside(machine: Machine, name: str, given: Sequence[Any]) -> Any:
