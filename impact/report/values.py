@@ -187,7 +187,8 @@ def _explain(one: Mismatch) -> str:
     word = "is" if one.is_sent else "may be"
     crashes = "crashes" if one.sure else "may crash"
     if one.kind == SIZE:
-        return f"arrays {'are' if one.is_sent else 'may be'} sent with sizes at which a subscriber {crashes}: {one.values}"
+        are = "are" if one.is_sent else "may be"
+        return f"arrays {are} sent with sizes at which a subscriber {crashes}: {one.values}"
     if one.kind == UNIT:
         reader = "a subscriber takes it as" if one.subscriber is not None else "REP-103 says"
         return f"`{one.field}` is sent in {one.values}; {reader} {one.why}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -18,6 +19,7 @@ UNHANDLED, CRASHING, IMPOSSIBLE = "unhandled-value", "crashing-value", "impossib
 FRAME, SIZE, UNIT = "frame-mismatch", "size-mismatch", "unit-mismatch"
 _FRAMES = ("frame_id", "child_frame_id")
 _MOST_MESSAGES = 24
+_INDEX = re.compile(r"\[\d+\]")
 _SEVERITIES = ("note", "warning", "error")
 _MOST_LISTED = 32
 _BEYOND_END = (CrashKind.INDEX, CrashKind.EMPTY)
@@ -393,7 +395,7 @@ def _find_telling(answer: CallbackAnswer, way: SentWay, crash: MessageCrash) -> 
 
 
 def _is_text(answer: CallbackAnswer, field: str) -> bool:
-    stem = field.removesuffix(".size")
+    stem = _INDEX.sub("[]", field.removesuffix(".size"))
     return any(one.path == stem and one.kind is InputKind.CHARACTER for one in answer.fields)
 
 
@@ -478,8 +480,8 @@ def _is_choice(one: FieldSets) -> bool:
         return handled.texts is not None
     if one.kind is not InputKind.INTEGER or handled.infinities or handled.has_nan:
         return False
-    listed = sum(high - low + 1 for low, high in handled.spans)
-    return listed <= _MOST_LISTED and (listed > 1 or bool(one.names))
+    listed = len(_list_single(handled))
+    return listed > 1 or (listed == 1 and bool(one.names))
 
 
 def _list_impossible(answer: CallbackAnswer, topic: str, rows: Sequence[Sender]) -> Iterator[Mismatch]:
@@ -494,8 +496,9 @@ def _list_impossible(answer: CallbackAnswer, topic: str, rows: Sequence[Sender])
         if any(one is None or not one.is_known for one in sent):
             continue
         known = [one.values for one in sent if one is not None]
-        left = [span for span in handled.spans if span[0] == span[1] and isinstance(span[0], int)]
-        never = tuple(span for span in left if not any(has_value(values, span[0]) for values in known))
+        never = tuple(
+            (value, value) for value in _list_single(handled) if not any(has_value(values, value) for values in known)
+        )
         lost: tuple[bytes, ...] = ()
         if handled.texts is not None and all(values.texts is not None for values in known):
             texts = {text for values in known for text in values.texts or ()}
@@ -504,6 +507,14 @@ def _list_impossible(answer: CallbackAnswer, topic: str, rows: Sequence[Sender])
             if values is not None and sets.kind is not InputKind.SIZE:
                 text = format_values(values, sets.names)
                 yield Mismatch(IMPOSSIBLE, "note", topic, answer.message_type, sets.path, text, None, answer)
+
+
+def _list_single(values: FieldValues) -> list[int]:
+    """The values of a set of whole numbers, where it lists a few."""
+    spans = [(low, high) for low, high in values.spans if isinstance(low, int) and isinstance(high, int)]
+    if len(spans) != len(values.spans) or sum(high - low + 1 for low, high in spans) > _MOST_LISTED:
+        return []
+    return [value for low, high in spans for value in range(low, high + 1)]
 
 
 def has_value(values: FieldValues, number: Number) -> bool:

@@ -84,11 +84,12 @@ class CallbackKey(NamedTuple):
     line: int
     callback: str
     type: str
+    topics: tuple[str, ...]
 
 
 def get_key(answer: CallbackAnswer) -> CallbackKey:
     """Of an answer."""
-    return CallbackKey(answer.kind, answer.path, answer.line, answer.callback, answer.message_type)
+    return CallbackKey(answer.kind, answer.path, answer.line, answer.callback, answer.message_type, answer.topics)
 
 
 class Request(NamedTuple):
