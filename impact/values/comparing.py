@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from ..model.flow.graph import Graph
 from .answers import CallbackAnswer
-from .matching import Publishers, list_senders
+from .matching import TopicPublishers, list_senders
 from .outcomes import Reaction
 from .projection import format_values
 
@@ -63,7 +63,7 @@ def _collect(answers: Iterable[CallbackAnswer], graph: Graph) -> dict[tuple[str,
     """The sets of each callback that was explored, by its name, kind and the type of its message."""
     answers = list(answers)
     found: dict[tuple[str, str, str], _Sets] = {}
-    publishers = Publishers(graph)
+    publishers = TopicPublishers(graph)
     for answer in answers:
         if answer.is_explored or answer.sent:
             texts: dict[tuple[str, str, str], str | None] = {}
@@ -88,7 +88,7 @@ def _list_reactions(answer: CallbackAnswer) -> Iterator[tuple[tuple[str, str, st
 
 
 def _list_sent(
-    answer: CallbackAnswer, publishers: Publishers
+    answer: CallbackAnswer, publishers: TopicPublishers
 ) -> Iterator[tuple[tuple[str, str, str], str | None]]:  # fmt: skip
     for topic, rows in list_senders([answer], publishers).items():
         texts: dict[str, dict[str, None]] = {}

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from ..model.flow.graph import Graph
 from .answers import CallbackAnswer, CallbackExample, FieldSets, SentThrough, SentValues, SentWay
-from .narrowing import GivenMessage, MessageCrash, Outcome
+from .narrowing import GivenMessage, MessageCrash, MessageOutcome
 from .outcomes import CodeLine, CrashKind, InputKind, Reaction
 from .projection import FieldValues, Number, format_values
 from .survey import CallbackKey, Judged, Request, Survey, get_key
@@ -25,7 +25,7 @@ _MOST_LISTED = 32
 _BEYOND_END = (CrashKind.INDEX, CrashKind.EMPTY)
 
 
-class Hop(NamedTuple):
+class EarlierSender(NamedTuple):
     """Who sent what a publisher passes on: the callback, the topic, and where."""
 
     callback: str
@@ -44,7 +44,7 @@ class Sender(NamedTuple):
     type: str = ""
     ways: tuple[SentWay, ...] = ()
     is_listed: bool = False
-    via: tuple[Hop, ...] = ()
+    via: tuple[EarlierSender, ...] = ()
     key: CallbackKey | None = None
 
 
@@ -71,7 +71,7 @@ class Mismatch:
     is_sent: bool = True
 
 
-class Publishers:
+class TopicPublishers:
     """What is known of the publishers of topics."""
 
     def __init__(self, graph: Graph):
@@ -88,7 +88,7 @@ class Publishers:
         self._has_open_names = any(
             one.role == "publisher" and one.how in ("unresolved", "partly") for one in graph.endpoints
         ) or any(not one.topic for one in graph.publishes)
-        # Publishers of which no statement is known: who gets them may send anything.
+        # TopicPublishers of which no statement is known: who gets them may send anything.
         sending = {(one.node, one.topic) for one in graph.publishes}
         self._unknown = {
             one.topic
@@ -122,7 +122,7 @@ Senders = dict[str, list[Sender]]
 """By topic."""
 
 
-def list_senders(answers: Iterable[CallbackAnswer], publishers: Publishers) -> Senders:
+def list_senders(answers: Iterable[CallbackAnswer], publishers: TopicPublishers) -> Senders:
     """What callbacks publish, by topic, as far as the graph names the topic of a statement."""
     found: Senders = {}
     for answer in answers:
@@ -132,12 +132,12 @@ def list_senders(answers: Iterable[CallbackAnswer], publishers: Publishers) -> S
     return found
 
 
-def _list_common_topics(sent: SentThrough, publishers: Publishers) -> set[str]:
+def _list_common_topics(sent: SentThrough, publishers: TopicPublishers) -> set[str]:
     return publishers.list_topics(sent.places[0]) if len(sent.places) == 1 else set()
 
 
 def _make_sender(
-    answer: CallbackAnswer, sent: SentThrough, publishers: Publishers, via: tuple[Hop, ...] = ()
+    answer: CallbackAnswer, sent: SentThrough, publishers: TopicPublishers, via: tuple[EarlierSender, ...] = ()
 ) -> Sender:
     return Sender(
         answer.callback, sent.places, {one.path: one for one in sent.fields}, publishers.find_type(sent.places[0]),
@@ -150,7 +150,7 @@ def list_mismatches(
 ) -> list[Mismatch]:
     """All mismatches between the callbacks of a survey. ros: 1 or 2. Topics with a publisher that was not explored, or
     whose name is not certain, have no impossible branches."""
-    publishers = Publishers(graph)
+    publishers = TopicPublishers(graph)
     senders = _follow_one_hop(answers, list_senders(answers, publishers), publishers, survey, jobs)
     judged = _Verdicts(answers, senders, survey, jobs)
     found: list[Mismatch] = []
@@ -198,7 +198,7 @@ def _make_message(row: Sender, way: SentWay) -> GivenMessage:
 
 
 def _follow_one_hop(
-    answers: Sequence[CallbackAnswer], senders: Senders, publishers: Publishers, survey: Survey, jobs: int
+    answers: Sequence[CallbackAnswer], senders: Senders, publishers: TopicPublishers, survey: Survey, jobs: int
 ) -> Senders:
     """Senders with what callbacks make of what they receive. A callback whose publishers are all known sends no more
     than what follows from these; any callback passes on what follows from a message that is known."""
@@ -236,17 +236,21 @@ def _follow_one_hop(
             _add_senders(found, answer, one.together, publishers, ())
         for (topic, row, way), sent in zip(origins[key], one.sent, strict=True):
             if not way.is_assumed:
-                _add_senders(found, answer, sent, publishers, (Hop(row.callback, topic, way.place),))
+                _add_senders(found, answer, sent, publishers, (EarlierSender(row.callback, topic, way.place),))
     return found
 
 
-def _is_followed(answer: CallbackAnswer, senders: Senders, publishers: Publishers) -> bool:
+def _is_followed(answer: CallbackAnswer, senders: Senders, publishers: TopicPublishers) -> bool:
     """Whether somebody may want to know what a callback passes on."""
     return any(_list_common_topics(sent, publishers) for sent in answer.sent) and bool(senders)
 
 
 def _add_senders(
-    found: Senders, answer: CallbackAnswer, sent: Sequence[SentThrough], publishers: Publishers, via: tuple[Hop, ...]
+    found: Senders,
+    answer: CallbackAnswer,
+    sent: Sequence[SentThrough],
+    publishers: TopicPublishers,
+    via: tuple[EarlierSender, ...],
 ) -> None:
     """Adds what a callback sends, where that is not known of it already."""
     for one in sent:
@@ -272,7 +276,7 @@ class _Verdicts:
     """What subscribers do with the messages of their publishers."""
 
     def __init__(self, answers: Sequence[CallbackAnswer], senders: Senders, survey: Survey, jobs: int):
-        self._outcomes: dict[tuple[CallbackKey, int], Outcome] = {}
+        self._outcomes: dict[tuple[CallbackKey, int], MessageOutcome] = {}
         self._subscribers: dict[str, list[CallbackAnswer]] = {}
         self._open: dict[str, bool] = {}
         requests: list[Request] = []
@@ -300,7 +304,7 @@ class _Verdicts:
             for number, outcome in zip(numbers[key], one.outcomes, strict=True):
                 self._outcomes[key, number] = outcome
 
-    def find(self, answer: CallbackAnswer, way: SentWay) -> Outcome | None:
+    def find(self, answer: CallbackAnswer, way: SentWay) -> MessageOutcome | None:
         return self._outcomes.get((get_key(answer), id(way)))
 
     def may_be_handled_elsewhere(self, topic: str, way: SentWay, answer: CallbackAnswer) -> bool:

@@ -53,7 +53,7 @@ class MessageCrash(NamedTuple):
     fields: tuple[str, ...]
 
 
-class Outcome(NamedTuple):
+class MessageOutcome(NamedTuple):
     """What follows from one message. reactions: all that can; none where the message is beyond the bounds. is_whole:
     whether every way was followed."""
 
@@ -115,12 +115,12 @@ def _fix_parameter(one: SymbolicInput, value: str | float | None) -> int:
     return (_encode(one, known) or 0) if isinstance(known, (int, float)) else 0
 
 
-def judge_message(exploration: Exploration, message: GivenMessage, seconds: float = 5.0) -> Outcome:
+def judge_message(exploration: Exploration, message: GivenMessage, seconds: float = 5.0) -> MessageOutcome:
     """What follows from a message."""
     is_whole = not exploration.left
     found = _constrain(exploration.inputs, message)
     if found is None:
-        return Outcome(frozenset(), (), False)
+        return MessageOutcome(frozenset(), (), False)
     conditions, exact = found
     narrowed = _narrow(exploration, _join_all(conditions), seconds)
     solving = make_solving(exploration, time.monotonic() + seconds)
@@ -138,7 +138,7 @@ def judge_message(exploration: Exploration, message: GivenMessage, seconds: floa
         known = crashes.get((path.crash, path.place))
         if known is None or (certain and not known.is_certain):
             crashes[path.crash, path.place] = one
-    return Outcome(reactions, tuple(crashes.values()), is_whole and Reaction.UNKNOWN not in reactions)
+    return MessageOutcome(reactions, tuple(crashes.values()), is_whole and Reaction.UNKNOWN not in reactions)
 
 
 def list_sent_ways(

@@ -27,7 +27,7 @@ from .harness.session import HarnessSession, PreparedCallback, is_asked
 from .ir.explore import explore
 from .narrowing import (
     GivenMessage,
-    Outcome,
+    MessageOutcome,
     ParameterValues,
     judge_message,
     narrow_to_messages,
@@ -104,7 +104,7 @@ class Judged(NamedTuple):
     """What follows from each message of a request, what is sent then, and what is sent if one of them comes, None where
     that is not known."""
 
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[MessageOutcome, ...]
     sent: tuple[tuple[SentThrough, ...], ...]
     together: tuple[SentThrough, ...] | None
 
