@@ -15,6 +15,7 @@ from ..facts.store import Store, encode_rows
 from ..model import tracked_names as watch
 from ..model.cmake.build import At
 from ..model.flow.file_selection import compute_stamp
+from ..model.flow.workspace import get_flow
 from ..model.package import Watched
 from ..model.view import TargetView, UnresolvedUse
 from ..model.workspace import Workspace
@@ -82,7 +83,8 @@ def make_results_key(view: TargetView, rules: Iterable[str], group: Iterable[str
 
 def make_flow_key(workspace: Workspace, before: Workspace | None, rules: Iterable[str]) -> bytes:
     """The key of what these rules say of a workspace's message flow. before: the workspace at the base."""
-    stamps = [compute_stamp(each) for each in (workspace, before) if each is not None]
+    both = [each for each in (workspace, before) if each is not None]
+    stamps = [(compute_stamp(each), sorted(get_flow(each).systems.items())) for each in both]
     return hashlib.sha1(repr((stamps, compute_data_stamp(), sorted(rules))).encode()).digest()
 
 

@@ -141,6 +141,20 @@ class Providers(ShippedDatabase):
         """Every known CMake package whose name differs from this one in letter case at most."""
         return tuple(self._folded_cmake.get(name.lower(), ()))
 
+    @cache_method
+    def list_configured_components(self, name: str) -> dict[str, tuple[str, ...]]:
+        """The components of a CMake package each of which has a configuration of its own beside the package's
+        (`Qt5Widgets`, `gz-math7-eigen3`), with the platforms that have it; none of a package with fewer than three."""
+        if not self._find_row("cmake", name):
+            return {}
+        found: dict[str, tuple[str, ...]] = {}
+        for other in (other for names in self._folded_cmake.values() for other in names):
+            rest = other[len(name) :] if other.lower().startswith(name.lower()) else ""
+            same = other.startswith(name) and rest[:1].isupper()
+            if same or (rest[:1] in ("-", "_") and other.startswith((name, name.lower()))):
+                found[rest.lstrip("-_")] = self.list_cmake_platforms(other)
+        return found if len(found) >= _FEWEST_COMPONENTS else {}
+
     def find_pkgconfig(self, name: str) -> list[Provider]:
         """Who installs `name.pc`, best first."""
         return _deduplicate(self._find_facts("pkgconfig", name) + self._find_system("pkgconfig", name))
@@ -316,6 +330,9 @@ class Providers(ShippedDatabase):
             if name.lower() not in found:
                 found[name.lower()] = [name]
         return found
+
+
+_FEWEST_COMPONENTS = 3
 
 
 def _deduplicate(providers: list[Provider]) -> list[Provider]:
