@@ -57,6 +57,8 @@ namespace ri {
 
 // 0 while main and constructors run, 1 in the callback.
 inline int phase = 0;
+// Whether what is explored is main or a constructor itself; then loops that ask whether ROS is up have two rounds.
+inline bool is_main = false;
 
 inline void begin() noexcept { phase = 1; ri_begin(); }
 inline void effect(const char *kind, const char *name) noexcept { if (phase) ri_effect(kind, name); }
