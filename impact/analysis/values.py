@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 from ...edges.files import read_text, write_file
 from ..facts.store import Store
-from ..model.flow.graph import Graph
 from ..model.flow.workspace import get_flow, link_for_flow
 from ..values.answers import CallbackAnswer, ValuesReport
 from ..values.harness.replay import Replayed, is_confirmed
@@ -49,18 +48,13 @@ def explore_values(
         graph = get_flow(workspace).system
         survey = Survey(path, workspace, graph, bounds or Bounds())
         asked = Asked(nodes, topics, callbacks, kinds)
-        report = survey.explore(asked, replays=replays, fuzz_seconds=fuzz_seconds, jobs=jobs, progress=progress)
+        report, others = survey.explore(
+            asked, publishers=publishers, replays=replays, fuzz_seconds=fuzz_seconds, jobs=jobs, progress=progress
+        )
         if (nodes or topics or callbacks) and not report.callbacks:
             raise CheckError(f"{_spell(nodes, topics, callbacks)}: no such callback; list them without it")
         if out is not None:
             _write(survey, asked, report, emit, out)
-        others: tuple[CallbackAnswer, ...] = ()
-        received = {topic for one in report.callbacks for topic in one.topics}
-        if publishers and received:
-            known = {(one.path, one.line, one.callback) for one in report.callbacks}
-            wanted = _list_publishing(survey, graph, received)
-            found = survey.explore(Asked(kinds=KINDS, places=wanted), jobs=jobs, progress=progress)
-            others = tuple(one for one in found.callbacks if (one.path, one.line, one.callback) not in known)
         mismatches = list_mismatches([*report.callbacks, *others], graph)
     own = {(one.path, one.line, one.callback) for one in report.callbacks}
     kept = [one for one in mismatches if (one.subscriber.path, one.subscriber.line, one.subscriber.callback) in own]
@@ -100,13 +94,6 @@ def replay_witnesses(
         workspace = link_for_flow(tree, store, jobs, None)
         survey = Survey(path, workspace, get_flow(workspace).system, Bounds())
         return [(record, seen, is_confirmed(record.witness, seen)) for record, seen in survey.replay(records)]
-
-
-def _list_publishing(survey: Survey, graph: Graph, topics: set[str]) -> frozenset[tuple[str, int]]:
-    """Places of the callbacks from which something is published on some topics."""
-    statements = [one for one in graph.publishes if one.topic in topics]
-    files = {one.path for one in statements} | {way.trigger.path for one in statements for way in one.by}
-    return survey.list_places(files)
 
 
 def _spell(nodes: Sequence[str], topics: Sequence[str], callbacks: Sequence[str]) -> str:

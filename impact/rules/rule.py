@@ -39,6 +39,7 @@ from __future__ import annotations  # docs/queries.md shows types by the names t
 import importlib
 import pkgutil
 import re
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from typing import Any, Literal, NamedTuple
@@ -309,7 +310,8 @@ def group_rules(rules: Mapping[str, Rule]) -> dict[str, list[Rule]]:
 def import_rules() -> Iterator[None]:
     """Imports the modules of all families, one in each step."""
     for name in _list_modules():
-        importlib.import_module(name)
+        if name not in sys.modules:
+            importlib.import_module(name)
         yield
 
 

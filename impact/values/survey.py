@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -18,6 +18,7 @@ from ..model.flow.workspace import list_code
 from ..model.workspace import Workspace
 from .answers import CallbackAnswer, CallbackExample, ValuesReport
 from .evaluate import Evaluated, evaluate
+from .field_types import find_integer
 from .harness.callbacks import CppCallback, list_callbacks
 from .harness.compile import CannotCompile
 from .harness.fuzzing import run_fuzzer
@@ -33,6 +34,7 @@ from .python.replay import ReplayPlace, list_folders, replay_witness
 from .witnesses import WitnessRecord, format_publish_command, write_tests
 
 KINDS = ("subscriber", "service", "timer", "action")
+LANGUAGES = ("cpp", "python")
 _ANY_NUMBER = (InputKind.INTEGER, 64, False)
 Progress = Callable[[int, int], None]
 
@@ -45,15 +47,14 @@ class Asked(NamedTuple):
     topics: Collection[str] = ()
     callbacks: Collection[str] = ()
     kinds: Collection[str] = ("subscriber",)
-    places: Collection[tuple[str, int]] = ()
-    """Path and line of the calls that make them, where only some are asked for."""
 
 
 @dataclass
 class _Target:
-    """A callback that can be explored. prepared: its harness; code: of a Python one; types: of messages that it has
-    to do with, known once it was explored."""
+    """A callback that can be explored. identity: as _identify() has it; prepared: its harness; code: of a Python one;
+    types: of messages that it has to do with, known once it was explored."""
 
+    identity: tuple[str, str, int, str]
     answer: CallbackAnswer
     names: Mapping[str, Mapping[int, str]]
     prepared: PreparedCallback | None = None
@@ -69,43 +70,78 @@ class Survey:
         self._definitions = KnownInterfaces(workspace)
 
     def explore(
-        self, asked: Asked, *, replays: bool = False, fuzz_seconds: float = 0.0, jobs: int = 1,
-        progress: Progress | None = None,
-    ) -> ValuesReport:  # fmt: skip
-        """What was found out about the callbacks that are asked for, in the order of their places. replays: whether
-        examples are run for real, which compiles and runs code of the workspace, apart from this process. fuzz_seconds:
-        for which each C++ callback is fuzzed besides; 0 for not."""
+        self, asked: Asked, *, publishers: bool = False, replays: bool = False, fuzz_seconds: float = 0.0,
+        jobs: int = 1, progress: Progress | None = None,
+    ) -> tuple[ValuesReport, tuple[CallbackAnswer, ...]]:  # fmt: skip
+        """What was found out about the callbacks that are asked for, in the order of their places, and, with
+        publishers, about those that publish what these receive. replays: whether examples of the former are run for
+        real, which compiles and runs code of the workspace, apart from this process. fuzz_seconds: for which each of
+        their C++ callbacks is fuzzed besides; 0 for not."""
+        own = self._choose(asked)
+        rows = {language: [*own[language]] for language in LANGUAGES}
+        if publishers:
+            places = self._list_publishing({topic for chosen in own.values() for one in chosen for topic in one.topics})
+            for language, chosen in rows.items():
+                chosen += [
+                    one for one in self._callbacks[language] if (one.path, one.line) in places and one not in chosen
+                ]
         found: list[CallbackAnswer] = []
         offline: list[bool] = []
         with HarnessSession(self.root, self.workspace, self.graph, self.bounds) as session:
-            targets = [*self._list_cpp(session, asked), *self._list_python(asked)]
+            targets = [*self._list_cpp(session, rows["cpp"]), *self._list_python(rows["python"])]
             ready = [number for number, one in enumerate(targets) if not one.answer.reason]
             found = [one.answer for one in targets]
+            asked_for = {_identify(one) for chosen in own.values() for one in chosen}
             results = run_forked(_explore_target, ready, jobs, targets, self._make_messages(), self._modules)
             for done, (number, result) in enumerate(results, 1):
                 target = targets[number]
                 answer = _read_result(target.answer, result, self.root)
                 if isinstance(result, Evaluated):
                     target.types = result.asked
-                if replays and answer.examples:
+                is_own = target.identity in asked_for
+                if replays and is_own and answer.examples:
                     answer, is_offline = self._replay(target, answer)
                     offline.append(is_offline)
-                if fuzz_seconds and target.prepared is not None:
+                if fuzz_seconds and is_own and target.prepared is not None:
                     answer = _run_fuzzer(target.prepared, answer, fuzz_seconds)
                 found[number] = answer
                 if progress is not None:
                     progress(done, len(ready))
-        found.sort(key=lambda one: (one.path, one.line, one.callback))
-        return ValuesReport(tuple(found), self.bounds, replays, all(offline) if offline else None)
+        pairs = sorted(zip(found, targets, strict=True), key=lambda pair: _get_place(pair[0]))
+        kept = tuple(answer for answer, target in pairs if target.identity in asked_for)
+        known = {_get_place(one) for one in kept}
+        others = tuple(answer for answer, _ in pairs if _get_place(answer) not in known)
+        return ValuesReport(kept, self.bounds, replays, all(offline) if offline else None), others
+
+    @cached_property
+    def _callbacks(self) -> dict[str, list[CppCallback]]:
+        """All callbacks of the workspace, by language."""
+        return {language: list_callbacks(self.workspace, self.graph, language) for language in LANGUAGES}
+
+    def _choose(self, asked: Asked) -> dict[str, list[CppCallback]]:
+        """The callbacks that are asked for, by language."""
+        given = asked.nodes, asked.topics, asked.callbacks, asked.kinds
+        return {language: [one for one in rows if is_asked(one, *given)] for language, rows in self._callbacks.items()}
+
+    def _list_publishing(self, topics: Collection[str]) -> set[tuple[str, int]]:
+        """Where callbacks are given to the framework from which something is published on some topics."""
+        statements = [one for one in self.graph.publishes if one.topic in topics]
+        files = {one.path for one in statements} | {way.trigger.path for one in statements for way in one.by}
+        rows = (one for each in self._callbacks.values() for one in each if one.kind in KINDS)
+        return {(one.path, one.line) for one in rows if _get_file(one) in files}
 
     def replay(self, records: Sequence[WitnessRecord]) -> list[tuple[WitnessRecord, Replayed]]:
         """Runs recorded witnesses for real, as explore() does with its own. Those whose callback is not there any
         longer, or cannot be compiled, are unknown, with the reason."""
         found: list[tuple[WitnessRecord, Replayed]] = []
         with HarnessSession(self.root, self.workspace, self.graph, self.bounds) as session:
+            prepared: dict[tuple[str, str], list[_Target]] = {}
             for record in records:
-                asked = Asked(callbacks=(record.callback,), kinds=(record.kind,))
-                rows = [*self._list_cpp(session, asked), *self._list_python(asked)]
+                key = record.callback, record.kind
+                if key not in prepared:
+                    chosen = self._choose(Asked(callbacks=(record.callback,), kinds=(record.kind,)))
+                    prepared[key] = [*self._list_cpp(session, chosen["cpp"]), *self._list_python(chosen["python"])]
+                rows = prepared[key]
                 target = next((one for one in rows if one.answer.path == record.path), rows[0] if rows else None)
                 if target is None:
                     seen = Replayed(Reaction.UNKNOWN, reason=f"no callback {record.callback} in {record.path}")
@@ -134,7 +170,7 @@ class Survey:
         """Writes the harnesses of the C++ callbacks that are asked for, for KLEE; gives their folders."""
         made: list[Path] = []
         with HarnessSession(self.root, self.workspace, self.graph, self.bounds) as session:
-            for number, target in enumerate(self._list_cpp(session, asked)):
+            for number, target in enumerate(self._list_cpp(session, self._choose(asked)["cpp"])):
                 if target.prepared is not None and not target.answer.reason:
                     name = "".join(each if each.isalnum() else "_" for each in target.answer.callback)
                     made.append(target.prepared.emit_klee(folder / f"{number:02d}_{name}").folder)
@@ -148,22 +184,17 @@ class Survey:
         """Commands that send witnesses to a running node."""
         return [command for one in records if (command := format_publish_command(self._definitions, one))]
 
-    def list_places(self, files: Collection[str]) -> frozenset[tuple[str, int]]:
-        """Where callbacks of some files are given to the framework."""
-        rows = [one for each in ("cpp", "python") for one in list_callbacks(self.workspace, self.graph, each)]
-        return frozenset((one.path, one.line) for one in rows if _get_file(one) in files)
-
     # C++.
 
-    def _list_cpp(self, session: HarnessSession, asked: Asked) -> Iterator[_Target]:
-        prepared = session.prepare(nodes=asked.nodes, topics=asked.topics, callbacks=asked.callbacks, kinds=asked.kinds)
-        for one in prepared:
+    def _list_cpp(self, session: HarnessSession, callbacks: Iterable[CppCallback]) -> Iterator[_Target]:
+        for one in session.prepare_each(callbacks):
             path, line = one.function_place
             answer = CallbackAnswer(
                 one.callback, one.kind, "cpp", path, line, one.message_type, one.topics, one.nodes, self.bounds,
                 one.reason, stood_for=one.stood_for,
             )  # fmt: skip
-            yield _Target(answer, _name_constants(one.constants), one)
+            identity = one.kind, one.path, one.line, one.callback
+            yield _Target(identity, answer, _name_constants(one.constants, self.workspace.ros), one)
 
     # Python.
 
@@ -197,10 +228,8 @@ class Survey:
 
         return Messages(find_section, self.workspace.ros)
 
-    def _list_python(self, asked: Asked) -> Iterator[_Target]:
-        for one in list_callbacks(self.workspace, self.graph, "python"):
-            if not is_asked(one, asked.nodes, asked.topics, asked.callbacks, asked.kinds, asked.places):
-                continue
+    def _list_python(self, callbacks: Iterable[CppCallback]) -> Iterator[_Target]:
+        for one in callbacks:
             function = one.function
             path, line = (function.source.path, function.facts.line) if function is not None else (one.path, one.line)
             answer = CallbackAnswer(
@@ -208,18 +237,19 @@ class Survey:
                 _refuse(one),
             )  # fmt: skip
             if answer.reason:
-                yield _Target(answer, {})
+                yield _Target(_identify(one), answer, {})
                 continue
             module = self._modules.get(f"~{path}")
             if module is None:
-                yield _Target(replace(answer, reason=f"{path} cannot be read"), {})
+                yield _Target(_identify(one), replace(answer, reason=f"{path} cannot be read"), {})
                 continue
             code = CallbackCode(module, one.name, line, one.message_type)
-            yield _Target(answer, self._name_python_constants(one.message_type), code=code)
+            yield _Target(_identify(one), answer, self._name_python_constants(one.message_type), code=code)
 
     def _name_python_constants(self, type_: str) -> Mapping[str, Mapping[int, str]]:
         package, _, name = type_.partition("/")
-        return _name_constants(list_constants(self._definitions, f"{package}/msg/{name}")) if name else {}
+        found = list_constants(self._definitions, f"{package}/msg/{name}") if name else {}
+        return _name_constants(found, self.workspace.ros)
 
     # Replays.
 
@@ -252,6 +282,15 @@ class Survey:
             messages = self._make_messages()
             messages.asked.update(target.types)
             return replay_witness(place, witness, example.kinds, messages, Path(folder))
+
+
+def _identify(callback: CppCallback) -> tuple[str, str, int, str]:
+    """What tells one callback from the others: kind, where it is given to the framework, name."""
+    return callback.kind, callback.path, callback.line, callback.name
+
+
+def _get_place(answer: CallbackAnswer) -> tuple[str, int, str]:
+    return answer.path, answer.line, answer.callback
 
 
 def _get_file(callback: CppCallback) -> str:
@@ -345,12 +384,14 @@ def _judge(example: CallbackExample, witness: Witness, seen: Replayed) -> Callba
     return replace(example, confirmed=False, note=f"the replay saw: {what}")
 
 
-def _name_constants(constants: Mapping[str, tuple[str, str]]) -> Mapping[str, Mapping[int, str]]:
+def _name_constants(constants: Mapping[str, tuple[str, str]], ros: int) -> Mapping[str, Mapping[int, str]]:
     """Names of constants by the type of the fields that they are for, `uint8`."""
     found: dict[str, dict[int, str]] = {}
     for name, (type_, value) in constants.items():
+        number = find_integer(type_, ros)
+        key = f"{'int' if number.is_signed else 'uint'}{number.bits}" if number is not None else type_
         with suppress(ValueError):
-            found.setdefault({"byte": "int8", "char": "uint8"}.get(type_, type_), {}).setdefault(int(value, 0), name)
+            found.setdefault(key, {}).setdefault(int(value, 0), name)
     return found
 
 

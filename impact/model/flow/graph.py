@@ -190,11 +190,20 @@ class Unresolved(msgspec.Struct, frozen=True):
     written: str = ""
 
 
+class PackageCoverage(msgspec.Struct, frozen=True):
+    """Calls that a search of the text of a package finds, and how many of them were understood."""
+
+    package: str
+    found: int
+    understood: int
+
+
 class Coverage(msgspec.Struct, frozen=True):
     """calls: of the frameworks; resolved: those of which all is known that they name (topic, type, callback,
     publisher). by_default: of the resolved, those whose name is a parameter's default. unread: files with spans that
     did not parse. wrappers: calls inside functions that stand for the framework's own; their callers are counted.
-    uncompiled: sources that are left out, since no target compiles them."""
+    uncompiled: sources that are left out, since no target compiles them. by_text: what a search of the text finds of
+    calls, by package; missed: those of them that were not understood. Both are of the whole code."""
 
     calls: int
     resolved: int
@@ -204,6 +213,8 @@ class Coverage(msgspec.Struct, frozen=True):
     unresolved: tuple[Unresolved, ...] = ()
     wrappers: tuple[Unresolved, ...] = ()
     uncompiled: tuple[str, ...] = ()
+    by_text: tuple[PackageCoverage, ...] = ()
+    missed: tuple[Unresolved, ...] = ()
 
 
 class Graph(msgspec.Struct, frozen=True):

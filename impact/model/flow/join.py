@@ -46,7 +46,7 @@ from .objects import NodeObjects, make_key
 from .qos import apply_overrides, find_qos, list_overridable
 from .started import Instance, make_instance
 from .types import FlowType, parse_flow_type
-from .values import ASKING, FlowValue, FlowValues, spell_condition
+from .values import ASKING, FlowValue, FlowValues, Work, spell_condition
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _OVERRIDES = re.compile(r"qos_overrides\.").match
@@ -132,9 +132,9 @@ class Join:
         self._asked: dict[int, list[FlowValue]] = {}
         # Of the last launch, which is asked for more than once.
         self._started: tuple[Launched, tuple[list[Running], list[Unresolved]]] | None = None
-        # By the functions that run and the arguments given: the settings that it rests on, and what it is under these.
-        # With who runs it, so that nothing else comes by the same id().
-        self._sites_of: dict[tuple, list[tuple[Running, dict[str, FlowValue | None], Site]]] = {}
+        # By the use: who runs it, whether another may share it who runs other functions, on what it rests, and what it
+        # is then. Who runs it keeps the ids in the key from being reused.
+        self._sites_of: dict[tuple, list[tuple[Running, bool, Work, Site]]] = {}
         # Of a function it is the same in all nodes that run the same of what leads to it.
         self._ways: dict[tuple[Fn, frozenset[Fn]], list[CallWay]] = {}
 
@@ -593,15 +593,17 @@ class Join:
                 continue
             if owners.launched:
                 site = self._adapt_site(site, those[0])
+            coming = [owner for owner in those if not self._is_left_out(site.use, owner)]
+            adapted = [(owner, self._adapt_site(site, owner)) for owner in coming]
             if not site.implied:
-                lacking = self._find_missing(site)
+                # Of nodes that run the same code, one may have a name that is not known.
+                every = ((those[0], site), *adapted)
+                found = (self._find_missing(one) or self._find_refused(one, owner) for owner, one in every)
+                lacking = next(filter(None, found), None)
                 lost = Unresolved(*lacking, *_get_place(site.use), site.written) if lacking else None
                 count.call(lost, (site,))
-            for owner in those:
-                if self._is_left_out(site.use, owner):
-                    continue
+            for owner, here in adapted:
                 owners.use(owner)
-                here = self._adapt_site(site, owner)
                 for value in here.names:
                     for type_ in _select_types(here, owner):
                         yield self._make_endpoint(here, value, type_, owner)
@@ -685,28 +687,41 @@ class Join:
             return f"{site.role} callback", site.reason
         return None
 
+    def _find_refused(self, site: Site, owner: Owner) -> tuple[str, str] | None:
+        """What of a site is not known since ROS refuses its name."""
+        found = [self.resolve_name(site, value, owner) for value in site.names]
+        return next(((f"{site.role} name", reason) for name, _, reason in found if not name), None)
+
     def _adapt_site(self, site: Site, owner: Owner) -> Site:
         """A site as it is for whoever runs it: with the parameters and the arguments that a launch gives."""
         if not isinstance(owner, Running) or site.implied or (owner.values is self.values and self._is_written(site)):
             return site
-        arguments, made = owner.values.arguments, id(owner.values.made)
-        known = self._sites_of.setdefault((id(site.use), id(owner.functions), arguments, made), [])
-        for _, rests_on, found in known:
-            if all(owner.values.find_setting(name) == value for name, value in rests_on.items()):
+        values = owner.values.run(owner.functions)
+        known = self._sites_of.setdefault((id(site.use), bool(values.node)), [])
+        for one, is_shared, rests, found in known:
+            if (is_shared or one.functions is owner.functions) and values.is_same(rests):
                 return found
-        self.values.asked.clear()
         # What code that the node does not run passes to its functions is none of its names.
-        names = self.sites.list_names(site.use, site.prefix, owner.values.run(owner.functions))
-        if all(name.text is None for name in names):
+        names, rests = values.record(lambda: self.sites.list_names(site.use, site.prefix, values))
+        beside: list[Work] = []
+        if all(name.text is None for name in names) and any(name.unpassed for name in names):
             # It comes from code that the node does not run, as far as is known.
-            elsewhere = self.sites.list_names(site.use, site.prefix, owner.values)
+            elsewhere, work = owner.values.record(
+                lambda: self.sites.list_names(site.use, site.prefix, owner.values)
+            )
+            beside.append(work)
             names = tuple(
                 name if name.text is None else name._replace(only_if=_join_conditions(name.only_if, _PASSED))
                 for name in elsewhere
             )
-        type_ = site.type or self.sites.find_type(site.use, owner.values)
+        type_ = site.type
+        if not type_:
+            type_, work = owner.values.record(lambda: self.sites.find_type(site.use, owner.values))
+            beside.append(work)
+        for work in beside:
+            rests.note_given(work)
         found = site._replace(names=names, type=type_)
-        known.append((owner, dict(self.values.asked), found))
+        known.append((owner, not beside, rests, found))
         return found
 
     def _is_written(self, site: Site) -> bool:

@@ -26,6 +26,7 @@ from .nodes import BuiltPackage, asks_for_name, find_entry_point
 from .plugins import assign_plugins, list_plugin_loads
 from .simulated import add_simulated
 from .system import ChosenLaunch, join_launched, merge_launches
+from .text_search import add_text_coverage
 from .uncompiled import find_uncompiled
 
 _LIBRARIES = frozenset(("library", "module", "interface"))
@@ -41,6 +42,8 @@ class WorkspaceFlow:
         self._workspace, self._store = workspace, workspace.extraction.store
         # Processes to use.
         self.jobs = 1
+        # Launch files that are started together, by the name of their system.
+        self.systems: dict[str, tuple[ChosenLaunch, ...]] = {}
 
     @cached_property
     def code(self) -> Join:
@@ -213,7 +216,7 @@ def join_code(workspace: Workspace) -> Join:
     files: dict[str, FlowFile] = {path: file for path, file in facts.items() if file is not None}
     from .started import InWorkspace  # needs all that follows launch files
 
-    defined = DefinedInterfaces(workspace.interface_names, workspace.ros)
+    defined = DefinedInterfaces(workspace.interface_names, workspace.ros, workspace.interface_texts)
     find_file = InWorkspace(workspace).find_workspace_path
     built = list_built(workspace, files)
     uncompiled = find_uncompiled(workspace, files)
@@ -244,7 +247,7 @@ def make_graph(
 
     def make() -> Graph:
         code = get_flow(workspace).code
-        return code.build(unread=_list_unread(code))
+        return add_text_coverage(code.build(unread=_list_unread(code)), code, workspace.read)
 
     flow = get_flow(workspace)
     flow.jobs = jobs
