@@ -310,13 +310,24 @@ def _explore_target(
     target = targets[number]
     found: Exploration
     if target.prepared is not None:
-        bounds = target.answer.bounds
-        found = explore(target.prepared.ir_texts, target.prepared.entry, bounds, target.prepared.is_workspace_file)
+        found = _explore_entries(target.prepared, target.answer.bounds)
     else:
         assert target.code is not None
         found = explore_callback(target.code, messages, modules.get, target.answer.bounds)
         return evaluate(found, target.names)._replace(asked=tuple(sorted(messages.asked)))
     return evaluate(found, target.names)
+
+
+def _explore_entries(prepared: PreparedCallback, bounds: Bounds) -> Exploration:
+    """What comes of the first entry that leads to a verdict; of the first of all where none does."""
+    first: Exploration | None = None
+    for entry in (prepared.entry, *(one.name for one in prepared.others)):
+        found = explore(prepared.ir_texts, entry, bounds, prepared.is_workspace_file)
+        if any(path.result is not Reaction.UNKNOWN for path in found.paths):
+            return found
+        first = first or found
+    assert first is not None
+    return first
 
 
 def _read_result(answer: CallbackAnswer, result: Evaluated | Died, root: Path) -> CallbackAnswer:

@@ -29,7 +29,7 @@ from ..outcomes import (
     Reaction,
     UnknownFunction,
 )
-from .access import load, read_scalar, require_access, store
+from .access import fill_cells, load, read_scalar, require_access, store
 from .exceptions import fill_standard_table, find_handler, get_raised, is_standard_exception, unwind
 from .layout import ArrayType, IrType, StructureType, UnknownSizeError, get_integer_type
 from .memory import AddressMap, MemoryObject, interpret_raw, read_raw
@@ -591,7 +591,7 @@ class Executor:
     def _exclude_early(self):
         """Where the harness says when the callback begins, what happened before is none of it."""
         paths = self.exploration.paths
-        if len(self.early) == len(paths):
+        if len(self.early) == len(paths) and not self.program.is_function("ri_begin"):
             return
         for number in self.early:
             path = paths[number]
@@ -1445,7 +1445,7 @@ class Executor:
                     values[index] = self._copy_argument(state, values[index], each.copied, copies)
             self._push(state, function, values, copies)
             return
-        value = self._call_unknown(state, instruction, name, values)
+        value = self._call_unknown(state, instruction, name, values, [each.extent for each in arguments])
         self.finish_instruction(state, state.get_frame(), instruction, value)
 
     def _copy_argument(self, state: State, value: Any, type_: IrType, copies: list[int]) -> Pointer:
@@ -1460,23 +1460,42 @@ class Executor:
         state.objects[target.object].is_zeroed = content.is_zeroed
         return target
 
-    def _call_unknown(self, state: State, instruction: Instruction, name: str, values: Sequence[Any]) -> Any:
-        """A function without a body: its result is any, and so is what its arguments point to."""
+    def _call_unknown(
+        self, state: State, instruction: Instruction, name: str, values: Sequence[Any], extents: Sequence[int] = ()
+    ) -> Any:
+        """A function without a body: its result is any, and so is what its arguments point to. extents: the bytes that
+        each argument is of; where that is not known, all from there on."""
         note = f"a call of `{name}`"
         if note not in state.notes:
             state.notes = (*state.notes, note)
         if instruction.type.is_pointer or instruction.type.is_aggregate:
             raise self.make_unknown(f"{note}, which gives an address or a structure")
-        for value in values:
-            if isinstance(value, Pointer) and value.object in state.objects:
-                memory_object = state.objects[value.object]
-                if memory_object.is_live and memory_object.kind not in ("constant", "outside"):
-                    memory_object = state.take_object(value.object)
-                    memory_object.cells = {}
-                    memory_object.is_zeroed = False
+        for number, value in enumerate(values):
+            if isinstance(value, Pointer):
+                self.forget_memory(state, value, extents[number] if number < len(extents) else 0)
         if instruction.type.size == 0:
             return None
         return self.make_any_scalar(state, note, instruction.type)
+
+    def forget_memory(self, state: State, pointer: Pointer, size: int):
+        """Some bytes are any from here on; size 0: all behind the address."""
+        memory_object = state.objects.get(pointer.object)
+        if memory_object is None or not memory_object.is_live or memory_object.kind in ("constant", "outside"):
+            return
+        memory_object = state.take_object(pointer.object)
+        offset = pointer.offset
+        if not isinstance(offset, int) or not 0 <= offset <= memory_object.size:
+            memory_object.cells = {}
+            memory_object.is_zeroed = False
+            return
+        end = min(offset + size, memory_object.size) if size else memory_object.size
+        if offset == 0 and end == memory_object.size:
+            memory_object.cells = {}
+            memory_object.is_zeroed = False
+        elif memory_object.is_zeroed:
+            fill_cells(memory_object, offset, end - offset, UNDEFINED)
+        else:
+            memory_object.clear(offset, end - offset)
 
     def throw(self, state: State, raised: Raised):
         """Unwinds to who catches or cleans up."""
