@@ -35,7 +35,7 @@ def test_errors_are_read():
             "namespace pcl { template <class... RiT> struct PointCloud",
         ),
         ((7, 11, "no type named 'Mode' in namespace 'vendor'"), "namespace vendor { struct Mode : ri::Anything"),
-        ((2, 11, "no member named 'open' in namespace 'vendor'"), "ri::Anything open(RiA &&...)"),
+        ((2, 11, "no member named 'open' in namespace 'vendor'"), "ri::Anything open(RiA &&...a)"),
         ((6, 18, "no member named 'RED' in namespace 'vendor'"), "inline constexpr int RED ="),
         ((7, 31, "no member named 'AUTO' in namespace 'vendor'"), "inline ri::Anything AUTO;"),
         ((2, 3, "use of undeclared identifier 'vendor'"), "namespace vendor { }"),

@@ -212,7 +212,7 @@ class Executor:
 
     def make_any_byte(self, bits: int) -> z3.BitVecRef:
         assert self.current is not None
-        return self.make_any(self.current, "memory that nobody wrote", bits)
+        return self.make_any(self.current, _UNWRITTEN, bits)
 
     def make_any_scalar(self, state: State, what: str, type_: IrType) -> Any:
         """Any value of a scalar type; ends the way for one that is an address."""
@@ -223,6 +223,15 @@ class Executor:
             kind = InputKind.FLOAT64 if type_.bits == 64 else InputKind.FLOAT32
             return read_float_bits(self.make_any(state, what, type_.bits, kind), type_.bits)
         raise self.make_unknown(what)
+
+    def make_any_address(self, state: State) -> Pointer:
+        """An address that is not known: none, or that of an object of its own that nothing is known of. What is written
+        there is not seen to do nothing."""
+        if self.decide(state, self.make_any(state, _UNWRITTEN, 8) == 0):
+            return NULL
+        if _OTHER not in state.notes:
+            state.notes = (*state.notes, _OTHER)
+        return self.add_object(state, _OTHER_SIZE, "other", _OTHER)
 
     def make_derived(
         self, state: State, what: str, compute: Callable[..., float], arguments: Sequence[Any], bits: int
@@ -378,7 +387,7 @@ class Executor:
         if value is UNDEFINED:
             if type_.is_pointer:
                 raise self.make_unknown("an address that nobody wrote is used")
-            return self.make_any_scalar(state, "memory that nobody wrote", type_)
+            return self.make_any_scalar(state, _UNWRITTEN, type_)
         return value
 
     # Conditions.
@@ -797,6 +806,17 @@ class Executor:
         if result is Reaction.CRASH and not place.path:
             kind = end.crash.value if end.crash is not None else ""
             result, reason = Reaction.UNKNOWN, f"{kind} outside of the workspace's code"
+        if (
+            result is Reaction.CRASH
+            and state.has_forgotten
+            and (
+                end.crash in (CrashKind.NULL, CrashKind.DANGLING)
+                or _UNWRITTEN in assumed
+                or any(name.startswith("~foreign") for name in names)
+            )
+        ):
+            kind = end.crash.value if end.crash is not None else ""
+            result, reason = Reaction.UNKNOWN, f"{kind}, unless what is not known prevents it"
         if result in (Reaction.HANDLED, Reaction.LOG_ONLY, Reaction.IGNORED):
             place = NOWHERE
         self.exploration.paths.append(
@@ -1398,6 +1418,10 @@ class Executor:
         caller = state.get_frame()
         self.finish_instruction(state, caller, caller.get_instruction(), value)
 
+    def _is_other(self, state: State, pointer: Pointer) -> bool:
+        found = state.objects.get(pointer.object)
+        return found is not None and found.kind == "other"
+
     def leave_frame(self, state: State):
         """Takes the topmost frame away, and its variables."""
         frame = state.frames.pop()
@@ -1416,7 +1440,9 @@ class Executor:
         if not isinstance(callee, Code):
             if isinstance(callee, Pointer) and callee.object == 0:
                 raise self.make_crash(CrashKind.NULL, "a function pointer is called")
-            raise self.make_unknown("a call of what is not known to be a function")
+            if not (isinstance(callee, Pointer) and self._is_other(state, callee)):
+                raise self.make_unknown("a call of what is not known to be a function")
+            callee = Code(_OTHER_FUNCTION)
         registers = frame.registers
         arguments: list[Argument] = list(operands[1:])
         values = [
@@ -1514,6 +1540,10 @@ class Executor:
 
 
 _UNDECIDED: Any = object()
+_OTHER = "an object that the callback has not made"
+_OTHER_SIZE = 4096
+_OTHER_FUNCTION = "a function that is not known"
+_UNWRITTEN = "memory that nobody wrote"
 _NO_ANSWER = "the solver gave no answer in time"
 
 

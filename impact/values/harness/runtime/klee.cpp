@@ -51,9 +51,13 @@ void ri_sent_size(const char *, uint64_t) noexcept {}
 void ri_sent_characters(const char *, const char *, uint64_t) noexcept {}
 void ri_sent_end(void) noexcept {}
 void ri_member(const char *, const void *, uint64_t) noexcept {}
-void ri_begin(void) noexcept {}
+static bool ri_begun = false;
+void ri_begin(void) noexcept { ri_begun = true; }
 void ri_end(void) noexcept { exit(0); }
 void ri_unknown(const char *what) noexcept { klee_warning_once(what); klee_silent_exit(77); }
+void ri_foreign(const char *what) noexcept { ri_unknown(what); }
+void ri_cut(const char *what) noexcept { if (ri_begun) ri_unknown(what); }
+void ri_forget(const void *, uint64_t) noexcept {}
 void ri_assume(int condition) noexcept { klee_assume(condition); }
 void RI_KLEE_ENTRY(void);
 }
