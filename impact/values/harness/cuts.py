@@ -9,7 +9,7 @@ from __future__ import annotations
 import bisect
 import json
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,9 +17,14 @@ from ....edges.files import read_file, write_file
 from .stubs import CompileError
 
 _BYTES = 4_000_000
-_PLACE = re.compile(r"^(?P<path>[^\s:][^:]*):(?P<line>\d+):(?P<column>\d+): (?:fatal )?(?P<what>error|note): (?P<text>.*)$")
+_LONGEST_HEAD = 4000
+"""What is looked at before a brace."""
+_PLACE = re.compile(
+    r"^(?P<path>[^\s:][^:]*):(?P<line>\d+):(?P<column>\d+): (?:fatal )?(?P<what>error|note): (?P<text>.*)$"
+)
 _MASKED = re.compile(
-    r"//[^\n]*|/\*.*?\*/|R\"(?P<mark>[^()\\\s]*)\(.*?\)(?P=mark)\"|\"(?:\\.|[^\"\\\n])*\"|(?<![0-9a-fA-F])'(?:\\.|[^'\\\n])+'|"
+    r"//[^\n]*|/\*.*?\*/|R\"(?P<mark>[^()\\\s]*)\(.*?\)(?P=mark)\"|"
+    r"\"(?:\\.|[^\"\\\n])*\"|(?<![0-9a-fA-F])'(?:\\.|[^'\\\n])+'|"
     r"^[ \t]*#(?:[^\n\\]|\\.|\\\n)*",
     re.DOTALL | re.MULTILINE,
 )
@@ -50,7 +55,7 @@ def mask_source(text: str) -> str:
     return _MASKED.sub(lambda found: re.sub(r"[^\n]", " ", found[0]), text)
 
 
-def locate_errors(output: str, is_inside) -> list[CompileError]:
+def locate_errors(output: str, is_inside: Callable[[str], bool]) -> list[CompileError]:
     """Errors by where they are in files that are ours to change: those in other files, where these are used from."""
     found: list[CompileError] = []
     waiting: CompileError | None = None
@@ -239,11 +244,11 @@ def _list_braces(masked: str) -> Iterator[_Brace]:
 
 
 def _find_kind(masked: str, head: int, place: int, inside: str) -> str:
-    text = masked[head:place].rstrip()
+    text = masked[max(head, place - _LONGEST_HEAD) : place].rstrip()
     if inside in ("block", "function", "other"):
         if inside == "other" and "[" not in text[-400:]:
             return "other"
-        return "block" if not text or _BEFORE_BLOCK.search(text) else "other"
+        return "block" if not text or _BEFORE_BLOCK.search(text[-400:]) else "other"
     if re.search(r"\b(?:namespace|extern)\b[\w\s:]*$", text):
         return "outer"
     if re.search(r"\benum\b", text):

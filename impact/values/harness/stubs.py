@@ -94,7 +94,7 @@ class StubTable:
         found = False
         for each in errors:
             text, quoted = each.text, _QUOTED.findall(each.text)
-            if not quoted or not re.search(r"redefinition of|redefinition with different|is ambiguous|redeclared", text):
+            if not quoted or not re.search(r"redefinition (?:of|with different)|is ambiguous|redeclared", text):
                 continue
             names = [key for key in self._names if key[1] == _strip_arguments(quoted[0]).rpartition("::")[2]]
             written = text.rpartition(" vs ")[2]
