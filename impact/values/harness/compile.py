@@ -266,7 +266,7 @@ class Workshop:
                 unit.boost = False
                 self._find_headers(unit, clang, path)
                 continue
-            learned = unit.stubs.learn(errors) or unit.stubs.withdraw(errors)
+            learned = unit.stubs.learn(errors) or unit.stubs.remove_names(errors)
             learned = learned or unit.cuts.cut(run.errors)
             if not learned and own and len(own) == len(errors) and write is not None:
                 self._drop_parts(unit, own, write, path)

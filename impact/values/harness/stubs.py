@@ -88,7 +88,7 @@ class StubTable:
                 return True
         return False
 
-    def withdraw(self, errors: Sequence[CompileError]) -> bool:
+    def remove_names(self, errors: Sequence[CompileError]) -> bool:
         """Takes names back that the code declares itself, as errors say; these are not made again. Gives whether
         there were any."""
         found = False
