@@ -406,7 +406,7 @@ def _explore_target(
 def _explore(target: _Target, messages: Messages, modules: Mapping[str, ModuleCode]) -> Exploration:
     if target.prepared is not None:
         bounds, own = target.answer.bounds, target.prepared
-        found = explore(own.ir_texts, own.entry, bounds, own.is_workspace_file)
+        found = _explore_entries(own, bounds)
         if target.answer.kind == "main":
             found.left += 1  # its loops were followed for two rounds
         return found
@@ -453,6 +453,18 @@ def _shorten_places(judged: Judged, root: Path) -> Judged:
 def _shorten_sent(sent: SentThrough, root: Path) -> SentThrough:
     ways = tuple(one._replace(place=_shorten_place(one.place, root)) for one in sent.ways)
     return replace(sent, places=tuple(_shorten_place(place, root) for place in sent.places), ways=ways)
+
+
+def _explore_entries(prepared: PreparedCallback, bounds: Bounds) -> Exploration:
+    """What comes of the first entry that leads to a verdict; of the first of all where none does."""
+    first: Exploration | None = None
+    for entry in (prepared.entry, *(one.name for one in prepared.others)):
+        found = explore(prepared.ir_texts, entry, bounds, prepared.is_workspace_file)
+        if any(path.result is not Reaction.UNKNOWN for path in found.paths):
+            return found
+        first = first or found
+    assert first is not None
+    return first
 
 
 def _read_result(answer: CallbackAnswer, result: Evaluated | Died, root: Path) -> CallbackAnswer:
