@@ -1,6 +1,6 @@
 """The message-flow graph as text: each topic, service and action with who uses it, and what could not be resolved."""
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from operator import itemgetter
 
 from ....edges.console import format_count
@@ -43,12 +43,28 @@ def render(selection: Selection, base: Graph | None, everything: bool = False, s
         if which:
             said = f"{format_count(len(which), 'node')} {what}: {', '.join(sorted(which))}"
             lines += [*lay_out([LinePart(said)], style, 0, 2), ""]
+    lines += _render_uncertain(graph, names, everything, style)
     near = graph.coverage.unresolved
     if selection.asked and not everything:
         paths = {each.path for each in (*graph.endpoints, *graph.publishes)}
         near = tuple(one for one in near if one.path in paths)
     lines += render_coverage(graph.coverage, near, everything, style)
     return "\n".join(lines) + "\n"
+
+
+def _render_uncertain(graph: Graph, names: Mapping[str, str], everything: bool, style: Style) -> Iterator[str]:
+    """The nodes that may not be started, or may have another name, with the reasons."""
+    why = {names[node.id]: "; ".join(node.uncertain) for node in graph.nodes if node.uncertain and node.id in names}
+    if not why:
+        return
+    said = f"{format_count(len(why), 'node')} that may not be started, or may have another name:"
+    yield from lay_out([LinePart(said)], style, 0, 2)
+    shown = sorted(why.items())
+    for name, reasons in shown if everything else shown[:_SHOWN]:
+        yield from lay_out([LinePart(f"{name}: {reasons}")], style, 2, 4)
+    if not everything and len(shown) > _SHOWN:
+        yield from lay_out([LinePart(f"and {len(shown) - _SHOWN:,} more; --all lists them")], style, 2, _HANG)
+    yield ""
 
 
 def _render_head(found: Sequence[Edge], graph: Graph, hidden: int, style: Style) -> Iterator[str]:
