@@ -63,7 +63,8 @@ def add_text_coverage(graph: Graph, code: Join, read: Callable[[str], bytes]) ->
 @cache
 def _compile_search() -> re.Pattern[str]:
     calls = load_frameworks().calls
-    names = {name for name, rows in calls.items() if name.startswith(_STEMS) and any(row.does in _ROLES for row in rows)}
+    making = (name for name, rows in calls.items() if any(row.does in _ROLES for row in rows))
+    names = {name for name in making if name.startswith(_STEMS)}
     listed = "|".join(sorted(map(re.escape, names), key=lambda name: (-len(name), name)))
     return re.compile(rf"(?<![\w~])({listed})\s*(?:<[^;{{}}()]*>\s*)?\(|\b(Subscriber)\s*<[^;{{}}()]*>\s*\w*\s*[({{]")
 

@@ -232,13 +232,15 @@ def render_coverage(
             yield from lay_out([LinePart(f"{len(paths)} {what}: {', '.join(shown)}{rest}")], style, 0, 2)
     if coverage.missed:
         found = sum(one.found for one in coverage.by_text)
-        said = f"{len(coverage.missed):,} of {format_count(found, 'call')} that a search of the text finds not understood:"
+        calls = format_count(found, "call")
+        said = f"{len(coverage.missed):,} of {calls} that a search of the text finds not understood:"
         yield from lay_out([LinePart(said)], style, 0, 2)
         for one in coverage.missed if everything else coverage.missed[:_SEARCHED]:
             pieces = [LinePart("", path=f"{one.path}:{one.line}:"), LinePart(f"`{one.written}`")]
             yield from lay_out(pieces, style, 2, 4)
         if not everything and len(coverage.missed) > _SEARCHED:
-            yield from lay_out([LinePart(f"and {len(coverage.missed) - _SEARCHED:,} more; --all lists them")], style, 2, _HANG)
+            said = f"and {len(coverage.missed) - _SEARCHED:,} more; --all lists them"
+            yield from lay_out([LinePart(said)], style, 2, _HANG)
         worst = [one for one in coverage.by_text if one.found >= 4 and 2 * one.understood < one.found]
         for one in worst:
             said = f"of package `{one.package}` alone {one.understood} of {one.found}"

@@ -41,7 +41,8 @@ def make_files(written: str) -> dict[str, str]:
 @pytest.mark.parametrize(("written", "missed"), CASES)
 def test_cpp(tmp_path, written, missed):
     coverage = graph_on_disk(tmp_path, make_files(written)).coverage
-    assert [(one.written, one.path, one.line) for one in coverage.missed] == [(m, "ship/src/ship.cpp", 5) for m in missed]
+    found = [(one.written, one.path, one.line) for one in coverage.missed]
+    assert found == [(name, "ship/src/ship.cpp", 5) for name in missed]
 
 
 def test_python_and_counts(tmp_path):
@@ -73,5 +74,6 @@ def test_services_of_the_interfaces_of_a_node(tmp_path):
         rclcpp::create_service<std_srvs::srv::Trigger>(base, services, "serve", [](int) {}, qos, group);
     """
     found = graph_on_disk(tmp_path, make_files(written))
-    assert {(one.role, one.topic) for one in found.endpoints if one.role != "publisher"} == {("client", "/ask"), ("server", "/serve")}
+    services = {(one.role, one.topic) for one in found.endpoints if one.role != "publisher"}
+    assert services == {("client", "/ask"), ("server", "/serve")}
     assert not found.coverage.missed
