@@ -264,6 +264,13 @@ class FlowValues:
                 yield joined._replace(text=str(sum(int(one.text or "") for one in row)))
             elif numbers:
                 yield FlowValue(None, "unresolved", "whether numbers are counted is not followed")
+            elif value.text == "%":
+                yield FlowValue(None, "unresolved", "what `%` makes of it is not followed")
+            elif value.text == "/":
+                # Of paths, where one that begins with a `/` stands alone.
+                joined = _join(row)
+                texts = [one.text or "" for one in row]
+                yield joined if joined.text is None else joined._replace(text=posixpath.join(*texts))
             else:
                 yield _join(row)
 

@@ -50,6 +50,9 @@ IN_CPP = [
     ('std::stringstream out; out << "/old"; out.str("/new"); out << "/x";', "out.str()", "/new/x"),
     ('char name[50]; snprintf(name, sizeof(name), "/imu%d/data", 2);', "name", "/imu2/data"),
     ('char name[50]; sprintf(name, "/imu%02d", 2);', "name", "/imu02"),
+    ('std::filesystem::path base("/maps");', 'base / "city"', "/maps/city"),
+    ('std::filesystem::path base("/maps/");', 'base / "city"', "/maps/city"),
+    ("", 'boost::format("/leg%1%") % 3', "?"),
     # What is read of a string, or is made of it, leaves it as it is.
     ('std::string n = "/a"; if (std::find(n.begin(), n.end(), \'a\') != n.end()) {}', "n", "/a"),
     ('std::string n = "/a"; auto other = boost::to_upper_copy(n);', "n", "/a"),
@@ -78,6 +81,7 @@ IN_PYTHON = [
     ('"/a" + str(count + 1)', "/a3"),
     ('"/" + "/".join([side, "scan"])', "/port/scan"),
     ('os.path.join("/map", side)', "/map/port"),
+    ('Path("/map") / "city"', "/map/city"),
     ('"/PORT".lower()', "/port"),
     ('"/" + side.upper()', "/PORT"),
     ('"/a_x".replace("_x", "_y")', "/a_y"),
