@@ -290,7 +290,9 @@ class Join:
         does not tell itself on which node it is made."""
         if running.objects is None:
             return True
-        keys = frozenset().union(*(self.objects.find_keys(one, running.functions) for one in through))
+        keys: frozenset[str] = frozenset()
+        for one in through:
+            keys |= self.objects.find_keys(one, running.functions)
         keys = keys or self.objects.find_keys(use, running.functions)
         return bool(keys & running.objects) or (running.others is not None and not keys & running.others)
 
