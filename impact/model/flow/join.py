@@ -687,9 +687,7 @@ class Join:
         beside: list[Work] = []
         if all(name.text is None for name in names):
             # It comes from code that the node does not run, as far as is known.
-            elsewhere, work = owner.values.record(
-                lambda: self.sites.list_names(site.use, site.prefix, owner.values)
-            )
+            elsewhere, work = owner.values.record(lambda: self.sites.list_names(site.use, site.prefix, owner.values))
             beside.append(work)
             names = tuple(
                 name if name.text is None else name._replace(only_if=_join_conditions(name.only_if, _PASSED))

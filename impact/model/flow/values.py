@@ -723,6 +723,7 @@ class FlowValues:
             or (target := self.calls.find_argument(use, use.row.variable)) is None
             or self.origins.may_be_of(target.text, use.fn, origins)
         ]
+
     def _select_given(self, rows: Sequence[tuple[Fn, Assignment]]) -> tuple[Sequence[tuple[Fn, Assignment]], bool]:
         """Of assignments those that may be with the arguments of the command line; where an option that is given sets
         the variable, that alone. And whether one does."""
