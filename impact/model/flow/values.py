@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import posixpath
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence, Set
 from functools import cached_property
 from itertools import islice, product
 from operator import itemgetter
@@ -185,7 +185,7 @@ class FlowValues:
         settings: Mapping[str, str] | None = None,
         arguments: tuple[str, ...] | None = None,
         way: Mapping[Fn, FlowCall] | None = None,
-        within: Collection[Fn] | None = None,
+        within: Set[Fn] | None = None,
         node: str = "",
         made: Mapping[Fn, Sequence[Made]] | None = None,
     ):
@@ -224,7 +224,7 @@ class FlowValues:
         """The same where the code is a nodelet of another name."""
         return self.apply_launch(self.settings, self.arguments, node) if self.node else self
 
-    def run(self, functions: Collection[Fn]) -> FlowValues:
+    def run(self, functions: Set[Fn]) -> FlowValues:
         """The same code where only some functions run: what others pass to them does not count."""
         known = self._copies.get(id(functions))
         if known is None:
@@ -841,6 +841,7 @@ class FlowValues:
             or (target := self.calls.find_argument(use, use.row.variable)) is None
             or self.origins.may_be_of(target.text, use.fn, origins)
         ]
+
     def _select_given(self, rows: Sequence[tuple[Fn, Assignment]]) -> tuple[Sequence[tuple[Fn, Assignment]], bool]:
         """Of assignments those that may be with the arguments of the command line; where an option that is given sets
         the variable, that alone. And whether one does."""
