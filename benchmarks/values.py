@@ -13,6 +13,8 @@ It reads bitcode of the clang that it was built with: --clang clang++-14 --link 
 
 usage: values.py [WORKSPACE...] [--klee KLEE] [--klee-include FOLDER] [--clang CLANG] [--link LINK] [--seconds 30]
                  [--replay] [--out FACTS.jsonl]
+       values.py --study FACTS.jsonl... --out notebooks/data/values.jsonl
+                 what the notebook reads: such facts, and the callbacks of benchmarks/values
 """
 
 from __future__ import annotations
@@ -38,6 +40,7 @@ from rosimpact.impact.values.answers import CallbackAnswer
 from rosimpact.impact.values.outcomes import Bounds, Reaction
 from rosimpact.impact.values.survey import Asked, Survey
 
+SETS = Path(__file__).parent / "values"
 OWN = Path(__file__).parents[1] / "tests" / "values" / "callbacks"
 NO_KLEE = "KLEE is not installed: --klee names it, see the top of this file"
 _ERROR = re.compile(r"^Error: (?P<text>.*)$|^File: (?P<path>.*)$|^[Ll]ine: (?P<line>\d+)$", re.MULTILINE)
@@ -212,6 +215,50 @@ def summarize(records: list[dict]) -> list[str]:
     ]
 
 
+_TOLD = ("explored", "complete", "ways", "seconds")
+
+
+def list_real() -> list[dict]:
+    """The callbacks of real repositories that readers judged (benchmarks/values), with what the tool said of them."""
+    found: list[dict] = []
+    for drawn in sorted(SETS.glob("*.drawn.jsonl")):
+        name = drawn.name.partition(".")[0]
+        said = {_identify(row): row for row in _read_rows(SETS / f"{name}.said.jsonl")}
+        judged = {
+            (r["repo"], r["path"], r["line"], r["kind"]): r["true"] for r in _read_rows(SETS / f"{name}.verdicts.jsonl")
+        }
+        for row in _read_rows(drawn):
+            told = said.get(_identify(row))
+            if told is None:
+                continue
+            crashes = [
+                {**one, "true": judged.get((row["repo"], one["path"], one["line"], one["kind"]))}
+                for one in told["crashes"]
+            ]
+            found.append({
+                "of": "real", "set": name, "repo": row["repo"], "callback": row["callback"],
+                "language": "cpp" if row["path"].endswith((".cpp", ".cc", ".cxx", ".hpp", ".h")) else "python",
+                "opaque": bool(row.get("opaque")),
+                "read": {key: row.get(key) for key in ("handles", "ignores", "logs", "crashes")},
+                "said": {**{key: told.get(key) for key in _TOLD}, "crashes": crashes},
+            })  # fmt: skip
+    return found
+
+
+def _identify(row: dict) -> tuple:
+    return row["repo"], row["path"], row["line"], row["callback"]
+
+
+def _read_rows(path: Path) -> list[dict]:
+    return [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+
+
+def write_study(facts: list[Path], out: Path) -> None:
+    """Writes what the notebook reads."""
+    rows = [{"of": "harness", **row} for path in facts for row in _read_rows(path)]
+    out.write_text("".join(json.dumps(row) + "\n" for row in (*rows, *list_real())))
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("workspaces", nargs="*", type=Path)
@@ -222,7 +269,11 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=30.0)
     parser.add_argument("--replay", action="store_true")
     parser.add_argument("--out", type=Path)
+    parser.add_argument("--study", type=Path, nargs="+")
     options = parser.parse_args()
+    if options.study:
+        write_study(options.study, options.out)
+        return
     records: list[dict] = []
     for workspace in options.workspaces or [OWN / name for name in ("ten", "roscpp", "rclcpp")]:
         root = workspace.resolve()

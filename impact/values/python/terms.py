@@ -23,6 +23,10 @@ class NotModelledError(Exception):
     """The executor cannot go on: what follows is unknown. Its text says why."""
 
 
+class BoundReachedError(NotModelledError):
+    """A bound on steps or time: nothing further is executed."""
+
+
 @dataclass(frozen=True, slots=True)
 class Whole:
     """An int. term: a signed bit vector that is wide enough; low and high: between which it is."""
