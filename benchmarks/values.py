@@ -44,10 +44,13 @@ SETS = Path(__file__).parent / "values"
 OWN = Path(__file__).parents[1] / "tests" / "values" / "callbacks"
 NO_KLEE = "KLEE is not installed: --klee names it, see the top of this file"
 _ERROR = re.compile(r"^Error: (?P<text>.*)$|^File: (?P<path>.*)$|^[Ll]ine: (?P<line>\d+)$", re.MULTILINE)
-_FRAME = re.compile(r"^\s+#\S+ .* at (?P<path>/\S+?):(?P<line>\d+)$", re.MULTILINE)
+_FRAME = re.compile(r"^\s+#\S+ in .* at (?P<path>\S+?):(?P<line>\d+)$", re.MULTILINE)
+_SOURCES = (".cpp", ".cc", ".cxx", ".h", ".hpp")
 _REACTIONS = {"handled": Reaction.HANDLED, "log": Reaction.LOG_ONLY, "ignored": Reaction.IGNORED}
 _KINDS = (
-    (r"div(ide|ision) by zero|divrem", "division by zero"), (r"ASSERTION|assertion of libstdc", "failed assertion"),
+    # One word of KLEE's for both.
+    (r"division overflow|div(ide|ision) by zero", "division by zero"),
+    (r"ASSERTION|assertion of libstdc", "failed assertion"),
     (r"outside the range|float.cast", "float that no integer can hold"), (r"overflow", "signed overflow"),
     (r"shift", "shift by too many bits"), (r"std::|exception", "uncaught exception"), (r"abort", "abort"),
     (r"null pointer", "null pointer"), (r"out of bound|index-out-of-bounds|bounds", "index out of range"),
@@ -151,9 +154,12 @@ def read_error(text: str, suffix: str, workspace: Path) -> Crash:
     first = re.search(r"^File: (.*)\n[Ll]ine: (\d+)", text, re.MULTILINE)
     if first is not None:
         places.insert(0, (first[1], int(first[2])))
+    sources = [path.relative_to(workspace).as_posix() for path in workspace.rglob("*") if path.suffix in _SOURCES]
     for path, line in places:
-        if path.startswith(f"{workspace}/"):
-            return Crash(kind, path.removeprefix(f"{workspace}/"), line)
+        # KLEE leaves parts out at the beginning of some paths.
+        for source in sources:
+            if f"/{path.lstrip('/')}".endswith(f"/{source}") and f"{workspace}/{source}".endswith(path):
+                return Crash(kind, source, line)
     return Crash(kind, "", 0)
 
 
@@ -282,9 +288,9 @@ def main() -> None:
             for answer, harness in zip(answers, harnesses, strict=True):
                 record = {"workspace": root.name, **describe(answer, run_klee(harness, root, options))}
                 records.append(record)
+                if options.out is not None:
+                    options.out.write_text("".join(json.dumps(one) + "\n" for one in records))
                 print("\n".join(render(record)), flush=True)
-    if options.out is not None:
-        options.out.write_text("".join(json.dumps(one) + "\n" for one in records))
     print("\n".join(["", *summarize(records)]))
     sys.exit(0)
 

@@ -72,7 +72,9 @@ def is_confirmed(witness: Witness, replayed: Replayed) -> bool:
     if witness.result is not Reaction.CRASH:
         return True
     same_kind = witness.crash is replayed.crash
-    return same_kind and witness.place.line == replayed.place.line and _is_same_file(witness.place, replayed.place)
+    # A loop without an end is stopped on any of its lines.
+    same_line = witness.place.line == replayed.place.line or witness.crash is CrashKind.ENDLESS
+    return same_kind and same_line and _is_same_file(witness.place, replayed.place)
 
 
 def _is_same_file(one: CodeLine, other: CodeLine) -> bool:
