@@ -244,6 +244,8 @@ def _make_state(machine: PythonMachine, path: str, value: Any) -> Any:
         return value
     if isinstance(value, ArrayValue):
         return ArrayValue(path, value.shape)
+    if isinstance(value, dict):
+        return ArrayValue(path)  # whatever it holds, elements can be set
     return Opaque(path)
 
 

@@ -97,8 +97,8 @@ class Opaque:
 
 @dataclass(slots=True)
 class ArrayValue(Opaque):
-    """An array of numpy, whose numbers are not known. shape: None where it is not known either. changes: how often
-    elements were set."""
+    """An array of numpy, or a dictionary, whose elements are not known. shape: None where it is not known either.
+    changes: how often elements were set."""
 
     shape: tuple[int, ...] | None = None
     changes: int = 0
