@@ -176,7 +176,7 @@ class Workshop:
                 at.parent.mkdir(parents=True, exist_ok=True)
                 write_scratch_file(at, text.encode())
 
-    def _provide_headers(self, unit: SourceUnit, path: Path) -> None:
+    def _make_headers(self, unit: SourceUnit, path: Path) -> None:
         """Makes the headers of messages and facades that a unit and the workspace's headers include, as far as their
         text tells."""
         facades = list_folders(self.definitions.ros)
@@ -297,7 +297,7 @@ class Workshop:
         path = folder / "harness.cpp"
         unit.stubs = StubTable(self._read_line, self._is_own, self._list_bases)
         self._store(unit, path)
-        self._provide_headers(unit, path)
+        self._make_headers(unit, path)
         first: CompileError | None = None
         is_searched = False
         for _ in range(_ROUNDS_OF_STUBS):
