@@ -126,7 +126,7 @@ def _list_few(collected: _Collected, solving: Solving) -> set[int] | None:
     found = set(collected.numbers)
     for path, term in collected.terms:
         conditions = solving.select_related(path.condition, solving.find_traits(term).names)
-        if len(found | _find_values_at(solving, path, term, conditions)) > _FEW:
+        if len(found | _find_some(solving, path, term, conditions)) > _FEW:
             return None
         own: list[z3.BoolRef] = []
         while True:
@@ -144,7 +144,7 @@ def _list_few(collected: _Collected, solving: Solving) -> set[int] | None:
     return found
 
 
-def _find_values_at(solving: Solving, path: CallbackPath, term: z3.BitVecRef, conditions: Sequence[z3.BoolRef]) -> set[int]:
+def _find_some(solving: Solving, path: CallbackPath, term: z3.BitVecRef, conditions: Sequence[z3.BoolRef]) -> set[int]:
     """Values of a term that are had without the solver, by small numbers for one of its inputs."""
     found: set[int] = set()
     for name in sorted(solving.find_traits(term).names)[:3]:

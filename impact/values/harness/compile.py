@@ -225,10 +225,10 @@ class Workshop:
         """Whether a header is not there, or is one of ROS that is installed and stands in the way of ours."""
         key = path, unit.boost
         if key not in self._wanted:
-            self._wanted[key] = self._looks_wanted(path, unit)
+            self._wanted[key] = self._decide_wanted(path, unit)
         return self._wanted[key]
 
-    def _looks_wanted(self, path: str, unit: SourceUnit) -> bool:
+    def _decide_wanted(self, path: str, unit: SourceUnit) -> bool:
         if not path.startswith("/"):
             return True
         at = next((Path(path).relative_to(one) for one in _SYSTEM if path.startswith(one + "/")), None)

@@ -156,7 +156,7 @@ def _read_results(out: Path, root: Path, program: Path) -> dict[int, Replayed]:
             case, number = _Case(), int(rest[0])
         elif word == "status":
             case.status = int(rest[0])
-            found[number] = _judge(case, complete_frames(_read_errors(out, number), program), root)
+            found[number] = _judge(case, fill_frames(_read_errors(out, number), program), root)
         else:
             _note(case, word, rest)
     return found
@@ -272,7 +272,7 @@ def _classify_address(kind: str, errors: str) -> CrashKind:
     return _ADDRESSES.get(kind, CrashKind.INDEX)
 
 
-def complete_frames(errors: str, program: Path) -> str:
+def fill_frames(errors: str, program: Path) -> str:
     """A stack trace with the lines of those calls in a program that the sanitizer's own reader has no line of: it loses
     some at the ends of functions."""
     bare = [found for found in _BARE_FRAME.finditer(errors) if found["module"] == str(program)][:_MOST_FRAMES]

@@ -115,9 +115,9 @@ class PythonMachine:
             except (NotModelledError, PythonThrownError):
                 continue
             if isinstance(owner, PythonObject):
-                self._loosen(owner, node.attr)
+                self._widen(owner, node.attr)
 
-    def _loosen(self, owner: PythonObject, name: str) -> None:
+    def _widen(self, owner: PythonObject, name: str) -> None:
         """Lets a member be any value of its kind; what ROS or the workspace made is kept."""
         path = f"this.{name}"
         value = owner.members.get(name, _MISSING)
