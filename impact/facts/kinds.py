@@ -38,6 +38,7 @@ _READ_BY: tuple[tuple[str, str, tuple[str, ...]], ...] = (
      ("launch_xml", "launch_yaml", "xacro", "plugin_xml", "xml", "params", "shell")),
     ("setup", "SetupFile", ("setup_py", "setup_cfg", "pyproject")),
     ("requirements", "RequirementsFile", ("requirements",)),
+    ("repositories", "RepositoryList", ("repositories",)),
     ("gitignore", "IgnoreFile", ("gitignore",)),
     ("", "", ("script", "flow_script")),
     ("cpp.flow", "FlowFile", ("flow_cpp",)),
@@ -84,6 +85,7 @@ BY_NAME = {
     "pyproject.toml": "pyproject",
     "requirements.txt": "requirements",
     ".gitignore": "gitignore",
+    ".rosinstall": "repositories",
 }
 HEADER_ENDINGS = (".h", ".hpp", ".hh", ".hxx", ".h++", ".ipp", ".tpp", ".tcc", ".txx", ".inl", ".impl", ".cuh")
 BY_ENDING = {
@@ -93,6 +95,7 @@ BY_ENDING = {
     **dict.fromkeys(("yaml", "yml"), "params"),
     **dict.fromkeys(("sh", "bash", "zsh"), "shell"),
     "cfg": "script",
+    **dict.fromkeys(("repos", "rosinstall"), "repositories"),
     "xml": "xml",
     **dict.fromkeys(("xacro", "urdf", "sdf", "srdf", "world", "gazebo"), "xacro"),
     **dict.fromkeys((ending[1:] for ending in HEADER_ENDINGS), "cpp"),
@@ -167,7 +170,7 @@ _BUDGETS = {
     "colcon_cmake": "cmake",
     "shell": "script",
     **dict.fromkeys(("dockerfile", "ci"), "script"),
-    **dict.fromkeys(("gitignore", "requirements"), "script"),
+    **dict.fromkeys(("gitignore", "requirements", "repositories"), "script"),
 }
 
 

@@ -31,11 +31,12 @@ class Allow(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class Reference(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A mention of another package, or of a file, executable or plugin in one.
 
-    kind: `package` (`$(find p)`, get_package_share_directory), `executable` (node of a launch file, `rosrun`,
-    `ros2 run`), `file` (a launch or data file inside `package`), `sought` (a file whose name is looked for in all
-    folders of `package`, as `ros2 launch` does), `place` (a file or folder that code opens or writes to, or the folder
-    of a file whose name is not known), `plugin` (class name), `library` (of plugins, without `lib` and
-    `.so`), `tree node` (of a behaviour tree), `tree port` (a node, a blank and one of its ports), `command` (shell).
+    kind: `package` (`$(find p)`, get_package_share_directory), `executable` (node of a launch file, `rosrun`, `ros2
+    run`), `file` (a launch or data file inside `package`), `sought` (a file whose name is looked for in all folders of
+    `package`, as `ros2 launch` does), `place` (a file or folder that code opens or writes to, or the folder of a file
+    whose name is not known), `plugin` (class name), `library` (of plugins, without `lib` and `.so`), `distro file` (a
+    file that is named by the distro, which `{distro}` stands for), `tree node` (of a behaviour tree), `tree port` (a
+    node, a blank and one of its ports), `command` (shell).
     package: its name, empty when only `name` is known. name: executable, file, class or command, empty for `package`.
     conditional: stands under if/unless/try, so it may never run. conditions: of those, where one tells about the
     machine, these and UNDECIDED for any other; so the mention surely counts where all hold.

@@ -17,6 +17,7 @@ from ..conditions import Environment, evaluate_all
 from ..config import Config
 from ..facts.condition import Condition
 from ..facts.manifest import Dependency
+from ..facts.repositories import ListedRepository, fold_repository
 from ..targets.availability import Availabilities, Availability, Horizon, Symbol, list_horizons
 from ..targets.changes import DISTROS
 from ..targets.distro.distro import DistroTarget, ReleasedDependency
@@ -495,6 +496,22 @@ class WorkspaceOnTarget:
         known = self._library_names
         return [n for n in dict.fromkeys((name.lower(), folded, folded.rstrip("0123456789"))) if n in known]
 
+    @cache_method
+    def list_components(self, package: str) -> dict[str, bool]:
+        """The components that the CMake package of a system library has in some version, as its configurations or
+        targets tell them, each with whether the target has it; none where they are not known."""
+        configured = self.providers.list_configured_components(package)
+        if configured:
+            return {name: self.target.platform in platforms for name, platforms in configured.items()}
+        library = name_library(package)
+        here = {version for version in load_libraries().find_range(library, self.target.platform) if version}
+        known = load_libraries().list_components(library, package) if here else {}
+        return {name: here <= versions for name, versions in known.items()}
+
+    def find_library_version(self, package: str) -> str:
+        """The version of the system library that a CMake package is of; empty where it is not known."""
+        return self.target.find_library(name_library(package)) or ""
+
     @cached_property
     def _library_names(self) -> frozenset[str]:
         return self.target.list_library_names()
@@ -526,7 +543,38 @@ class WorkspaceOnTarget:
     @cache_method
     def may_be_unread(self, name: str) -> bool:
         """Whether a folder of the workspace that was not read may hold a package: a submodule most likely holds what is
-        called after it, or comes from a repository that is called as it is, in a version of its own."""
+        called after it, or comes from a repository that is called as it is, in a version of its own. So does a
+        repository that is listed and not imported, unless its version is that of the distro."""
+        listing = self.find_listing(name)
+        if listing is not None and listing[1].version != self.target.distro:
+            return True
+        return self.may_be_in_submodule(name)
+
+    @cache_method
+    def find_listing(self, name: str) -> tuple[str, ListedRepository] | None:
+        """The list of repositories for this target that names the repository of a package which is not imported, with
+        what it says of that."""
+        if not self.workspace.outside.listed or name in self.workspace.packages:
+            return None
+        urls = (ListedRepository("", url).names for url in self.target.list_repository_urls(name))
+        homes = {fold_repository(each) for each in (name, *self.target.list_repositories(name))}.union(*urls)
+        return next((one for one in self._missing_listings if not one[1].names.isdisjoint(homes)), None)
+
+    @cached_property
+    def _missing_listings(self) -> list[tuple[str, ListedRepository]]:
+        """What lists for this target name that no folder of the workspace is called like."""
+        here = {part for package in self.workspace for part in package.path.lower().replace("-", "_").split("/")}
+        others = DISTROS.keys() - {self.target.distro}
+        return [
+            (path, one)
+            for path, one in self.workspace.outside.listed
+            if one.names.isdisjoint(here)
+            and others.isdisjoint(re.split(r"[^a-z]+", path.lower()))
+            and one.version not in others
+        ]
+
+    def may_be_in_submodule(self, name: str) -> bool:
+        """The same of submodules and other folders that were not read alone."""
         unread = self.workspace.unread_names
         if any(is_called_after(name, folder) for folder in unread):
             return True

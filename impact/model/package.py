@@ -27,7 +27,7 @@ from ..facts.distros import DistroFile
 from ..facts.interface import Interface
 from ..facts.kinds import HEADER_ENDINGS, make_empty
 from ..facts.launch.actions import LaunchFile
-from ..facts.launch.references import PluginClass
+from ..facts.launch.references import ControlledJoint, PluginClass
 from ..facts.manifest import Manifest
 from ..facts.place import Allow, Reference
 from ..facts.python.reader import Import
@@ -38,6 +38,7 @@ from ..facts.searches import SearchedCpp, WordUse
 from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, Rows, UsageTable
 from ..facts.words import mentions
+from ..targets.providers.compiled import CompiledNames
 from ..targets.providers.message_headers import parse_type
 from ..targets.providers.standard import list_own_names
 from ..targets.surface.fields import Fields
@@ -61,8 +62,10 @@ from .python.undefined import (
 # What looks for uses is imported where it does: most packages are read back as they were joined before.
 if TYPE_CHECKING:
     from ..facts.extract import ExtractedFacts
+    from ..facts.launch.parameter_files import ParameterEntry
     from ..targets.asked_versions import AskedVersions
     from .api import Changes
+    from .cpp.own_classes import LeftOut, OwnClasses
     from .cpp.resolver import KnownFile
     from .discovery import PackagePlace
     from .members import FoundField
@@ -281,6 +284,56 @@ class ValueUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     text: str
 
 
+class LostOverrideUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A method that is to override one of a base class of the workspace, and does not. kind, base, method, class_,
+    declared: as LostOverride has them."""
+
+    kind: str
+    base: str
+    method: str
+    class_: str
+    declared: str
+    at: At
+    role: str
+    conditions: tuple[Condition, ...] = ()
+
+
+class InterfaceClaim(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """An interface of joints that a file of parameters gives a controller. kind: `command` or `state`."""
+
+    controller: str
+    kind: str
+    interface: str
+    joints: tuple[str, ...]
+    at: At
+    role: str
+
+
+class BranchedUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A name of a Python file that is bound in branches on the distro alone, see facts/python/branches.py. branches:
+    the conditions of each after which it can be used."""
+
+    name: str
+    at: At
+    role: str
+    branches: tuple[tuple[Condition, ...], ...]
+    function: str = ""
+
+
+class AbstractUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A class of which objects are made, and that leaves out a pure virtual method of a base of the workspace. at: the
+    class, or where an object is made where another package has it. made: where an object is made; None for a plugin."""
+
+    base: str
+    method: str
+    class_: str
+    declared: str
+    at: At
+    made: At | None
+    role: str
+    conditions: tuple[Condition, ...] = ()
+
+
 class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """All that rules ask of one package. Paths are relative to the workspace.
 
@@ -378,6 +431,17 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     values: tuple[ValueUse, ...] = ()
     # #error lines in files that are compiled, with their messages as names.
     errors: tuple[NameUse, ...] = ()
+    # Classes whose bases are classes of the workspace.
+    lost_overrides: tuple[LostOverrideUse, ...] = ()
+    abstract: tuple[AbstractUse, ...] = ()
+    # What robot descriptions give to ros2_control, with their paths.
+    controlled_joints: tuple[tuple[str, ControlledJoint], ...] = ()
+    # What controllers ask for of it.
+    claims: tuple[InterfaceClaim, ...] = ()
+    branched: tuple[BranchedUse, ...] = ()
+    # Files that targets compile, each with what it surely uses of libraries that need a link: functions that it calls
+    # and classes of which it makes objects.
+    compiled: tuple[tuple[str, tuple[str, ...]], ...] = ()
 
 
 # What no other package is asked about but one that has to do with it, see Workspace.groups: what its code says.
@@ -387,7 +451,8 @@ _INWARD = {
     if field.name in {
         "includes", "imports", "needed_headers", "reaches", "inner", "written_inner", "syntax", "allows", "problems",
         "uses", "members", "python_api", "cpp_api", "unresolved_receivers", "undefined", "own_calls", "unsearched",
-        "unincluded", "undeclared", "settings", "testing", "python_offer", "values", "errors",
+        "unincluded", "undeclared", "settings", "testing", "python_offer", "values", "errors", "compiled",
+        "lost_overrides", "abstract", "claims", "branched",
     }
 }  # fmt: skip
 
@@ -453,8 +518,8 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
     """The names that rules ask for: bare words, qualified names, heads of qualified names, Python names, and for names
     of the standard library the headers that offer them. modules: labels and patterns of uses in Python, by the
     package that is imported. fields: the table of interfaces. surfaces: what versions of packages offer, as
-    surface_store.Surfaces. parameters: labels and patterns of uses in files of parameters. uses: labels and patterns of
-    uses in C++ by a word of each, read when they are asked for."""
+    surface_store.Surfaces. compiled: gives the names that need a link. parameters: labels and patterns of uses in files
+    of parameters. uses: labels and patterns of uses in C++ by a word of each, read when they are asked for."""
 
     words: frozenset[str] = frozenset()
     qualified: frozenset[str] = frozenset()
@@ -464,6 +529,7 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
     version: str = ""
     fields: Fields | None = None
     surfaces: Any = None
+    compiled: Callable[[], CompiledNames] | None = None
     parameters: list[tuple[str, Pattern]] = []
     uses: Callable[[], Mapping[str, Sequence[tuple[str, Pattern]]]] | None = None
 
@@ -530,6 +596,9 @@ _OF_TESTS = frozenset(("TEST", "TEST_F", "TEST_P", "TYPED_TEST", "TYPED_TEST_P",
                        "InitGoogleMock"))  # fmt: skip
 
 
+_CLAIMS = {"command_interfaces": "command", "state_interfaces": "state"}
+
+
 class PackageJoin:
     """Joins the facts of a package's files. build: what its CMake says. files: all its paths. home: packages of the
     same workspace, which are not looked for in what changed elsewhere. asked: the versions of other packages that
@@ -586,6 +655,7 @@ class PackageJoin:
         launches: list[tuple[str, str]] = []
         data_words: list[str] = []
         references, plugins, registered, setup, requirements, interfaces = [], [], [], [], [], []
+        controlled: list[tuple[str, ControlledJoint]] = []
         tree_nodes: list[TreeNodes] = []
         trees: set[str] = set()
         modelled: set[str] = set()
@@ -642,6 +712,7 @@ class PackageJoin:
                 plugins.extend((path, p) for p in getattr(facts, "plugins", ()))
                 trees.update(getattr(facts, "trees", ()))
                 modelled.update(getattr(facts, "modelled", ()))
+                controlled.extend((path, joint) for joint in getattr(facts, "joints", ()))
         unused |= leftover
         if self.build_type == "catkin":  # which starts programs from the source space too
             own = (r for p, r in references if r.package == self.name and self.find_role(p) is None)
@@ -673,6 +744,7 @@ class PackageJoin:
 
         roots, programs = self.list_python_roots(setup), set(self.list_programs())
         uses = [*self.list_uses(roles), *self.list_python_uses(python), *self.list_parameter_uses(parameters)]
+        lost_overrides, abstract = self.read_own_classes(roles)
         return LinkedPackage(
             self.name,
             self.path,
@@ -746,11 +818,22 @@ class PackageJoin:
             settings=tuple(self.list_settings(parameters, launches)),
             values=tuple(self.list_values(parameters, launches)),
             errors=tuple(self.list_errors(roles)),
+            compiled=tuple(self.list_compiled(roles)),
             distros=tuple(distros),
             requirements=tuple(requirements),
             unsearched=tuple(self.list_unsearched(roles)),
             unincluded=tuple(self.list_unincluded(roles)),
             undeclared=tuple(self.list_undeclared(roles)),
+            lost_overrides=tuple(lost_overrides),
+            abstract=tuple(abstract),
+            controlled_joints=tuple(controlled),
+            claims=tuple(self.list_claims(parameters)),
+            branched=tuple(
+                BranchedUse(one.name, At(path, one.line, one.column), self.find_python_role(path),
+                            tuple(branch.conditions for branch in one.branches), one.function)
+                for path, facts in python.items()
+                for one in facts.branched
+            ),
             own_fields=tuple(
                 FieldOfWorkspace(
                     use.type, use.steps, At(path, use.line, use.column), self.find_python_role(path), use.conditions
@@ -989,6 +1072,68 @@ class PackageJoin:
                     use = NameUse(word, at, role, False, "cpp", around, targets, first.place.owner)
                     yield use, bases, self.list_outward(path)
 
+    def read_own_classes(self, roles) -> tuple[list[LostOverrideUse], list[AbstractUse]]:
+        """As LinkedPackage.lost_overrides and LinkedPackage.abstract."""
+        lost: list[LostOverrideUse] = []
+        left_out: dict[str, list[LeftOut]] = {}
+        for path, (role, _, targets, conditions) in roles.items():
+            facts = self.cpp.get(path)
+            if not targets or facts is None or not facts.parents:
+                continue
+            types = {word for at in self._list_around(path) for word in self.load(at).type_names}
+            derived = {last for last, words in facts.parents if not (types - {last}).isdisjoint(words.split())}
+            if not derived:
+                continue
+            classes = self._find_own_classes(path)
+            for class_ in self.load(path).declarations.classes:
+                if class_.name.rpartition("::")[2] not in derived or class_.specialised:
+                    continue
+                for found in classes.list_lost_overrides(class_):
+                    around = conditions + self.macros.resolve_conditions(found.spot.conditions or (), targets)
+                    at = At(path, found.spot.line, found.spot.column)
+                    lost.append(LostOverrideUse(found.kind, found.base, found.method, found.class_, found.declared, at,
+                                                role, around))  # fmt: skip
+                left_out[class_.name] = list(classes.list_left_out(class_, path))
+        return lost, list(self._list_abstract(roles, {name: found for name, found in left_out.items() if found}))
+
+    def _list_abstract(self, roles, left_out: Mapping[str, list[LeftOut]]) -> Iterator[AbstractUse]:
+        """left_out: by the class that has no such method."""
+        lasts = {name.rpartition("::")[2] for name in left_out}
+        seen: set[str] = set()
+        for path, (role, _, targets, conditions) in roles.items() if left_out else ():
+            if not targets or path not in self.cpp or lasts.isdisjoint(self.list_words(path)):
+                continue
+            for name, spot in self._find_own_classes(path).list_made(lasts, self.cpp[path].exports):
+                if name not in left_out or name in seen or (spot is not None and spot.conditions is None):
+                    continue
+                seen.add(name)
+                around = spot.conditions or () if spot is not None else ()
+                around = conditions + self.macros.resolve_conditions(around, targets)
+                made = At(path, spot.line, spot.column) if spot is not None else None
+                for found in left_out[name]:
+                    at = At(found.path, found.spot.line, found.spot.column)
+                    yield AbstractUse(found.base, found.method, name, found.declared, at, made, role, around)
+
+    def _list_around(self, path: str) -> list[str]:
+        """A C++ file, and the headers of the workspace that it reaches."""
+        own = (at for at in self.list_reached(path) if at != path and at in self.cpp)
+        return [path, *own, *self.list_offered(path)]
+
+    @cache_method
+    def _find_own_classes(self, path: str) -> OwnClasses:
+        from .cpp.own_classes import ClassFile, OwnClasses
+        from .cpp.resolver import Resolver
+
+        files = [ClassFile(at, self.load(at)) for at in self._list_around(path)]
+        return OwnClasses(files, Resolver([file.known for file in files], None, None), self._count_classes)
+
+    @cache_method
+    def _count_classes(self, name: str) -> int:
+        """How many definitions of a class the package has."""
+        last = name.rpartition("::")[2]
+        known = (self.load(path) for path, facts in self.cpp.items() if last in facts.type_names)
+        return sum(one.name == name for file in known for one in file.list_classes(last))
+
     def _has_alike(self, path: str, owner: str, word: str) -> bool:
         """Whether a class has a member that a word may stand for: one letter off, or shortened."""
         last = owner.rpartition("::")[2]
@@ -1123,6 +1268,25 @@ class PackageJoin:
                 around = conditions + self.macros.resolve_conditions(use.conditions, targets)
                 yield NameUse(use.text, At(path, use.line, use.column), role, public, "cpp", around, targets)
 
+    def list_compiled(self, roles) -> Iterator[tuple[str, tuple[str, ...]]]:
+        """As LinkedPackage.compiled."""
+        for path, (_, _, targets, _) in roles.items() if self.watched.compiled is not None else ():
+            facts = self.cpp.get(path)
+            if facts is None or not targets:
+                continue
+            known = self.watched.compiled()
+            made = {*facts.variables, *facts.made}
+            found = {
+                name.text
+                for name in facts.qualified
+                if not name.conditions
+                and (name.text in known.functions or (name.text in known.classes and name.text in made))
+            }
+            if not known.words.isdisjoint(words := facts.words.split(" ")):
+                found.update(known.words.intersection(words).difference(facts.defined))
+            if found:
+                yield path, tuple(sorted(found))
+
     def _brings_into_std(self, path: str, label: str) -> bool:
         """Whether a file, or a header of the package that it reaches, adds a namespace of the package to `std` in which
         the name that stands first in a label may be."""
@@ -1202,6 +1366,29 @@ class PackageJoin:
                     yield ValueUse(
                         found.name, found.package, found.plugin, found.node, *place, type_, show_value(found.value)
                     )
+
+    def list_claims(self, parameters: Iterable[str]) -> Iterator[InterfaceClaim]:
+        """The interfaces of joints that files of parameters name beside `joints`."""
+        words = self.read_words
+        wanted = [p for p in parameters if "joints" in words(p) and not _CLAIMS.keys().isdisjoint(words(p))]
+        for path, file in self.look(wanted, "flow_parameters").items():
+            nodes: dict[tuple[str, ...], dict[str, ParameterEntry]] = {}
+            for entry in file.entries:
+                if "ros__parameters" in entry.path[:-1]:
+                    nodes.setdefault(entry.path[:-1], {})[entry.path[-1]] = entry
+            for place, known in nodes.items():
+                joints = known["joints"].value if place[-1] == "ros__parameters" and "joints" in known else None
+                # A controller that commands another one names the joints of that.
+                if not isinstance(joints, list) or "command_joints" in known:
+                    continue
+                plain = tuple(joint for joint in joints if isinstance(joint, str) and "$" not in joint)
+                for key, kind in _CLAIMS.items():
+                    asked = known[key].value if key in known else None
+                    for name in asked if isinstance(asked, list) else ():
+                        if isinstance(name, str) and "$" not in name and "/" not in name:
+                            at = At(path, known[key].line)
+                            controller = place[-2].rpartition("/")[2] if len(place) > 1 else ""
+                            yield InterfaceClaim(controller, kind, name, plain, at, self.find_python_role(path))
 
     @cache_method
     def read_words(self, path: str) -> set[str]:

@@ -33,6 +33,7 @@ from ..facts.distros import ContainerFile, DistroFile
 from ..facts.extract import ExtractedFacts
 from ..facts.kinds import HEADER_ENDINGS, make_overall_version
 from ..facts.manifest import Manifest
+from ..facts.repositories import ListedRepository
 from ..facts.requirements import RequirementsFile
 from ..facts.setup import SetupFile
 from ..facts.store import Store
@@ -145,7 +146,8 @@ class Package:
 
 class FilesOutside:
     """What files say that belong to no package. lists_repositories: as Discovered has it. unread_submodules: the
-    folders of submodules that were not read, in order. twice: names that several packages have, of which one is read.
+    folders of submodules that were not read, in order. listed: what lists of repositories name, with the paths of
+    these. twice: names that several packages have, of which one is read.
     """
 
     def __init__(self, discovered: Discovered, extraction: ExtractedFacts):
@@ -158,11 +160,12 @@ class FilesOutside:
         self._scripts = [path for path in scripts if discovered.find_owner(path) is None]
         self._requirements = [p for p in extraction.list_paths("requirements") if discovered.find_owner(p) is None]
         self._containers = [path for path in extraction.list_paths("dockerfile", "ci") if not is_vendored(path)]
+        self._lists = [path for path in extraction.list_paths("repositories") if not is_vendored(path)]
 
     @property
     def identity(self) -> bytes:
         """Differs whenever one of them does."""
-        paths = (*self._scripts, *self._requirements, *self._containers)
+        paths = (*self._scripts, *self._requirements, *self._containers, *self._lists)
         ids = [(path, self._extraction.ids[path]) for path in paths]
         said = (ids, self.lists_repositories, self.unread_submodules, self.twice)
         return repr(said).encode("utf-8", "backslashreplace")
@@ -185,6 +188,13 @@ class FilesOutside:
         """The workspace's own Dockerfiles and CI files."""
         self._extraction.preload(self._containers)
         return {path: self._extraction.get_facts(path).facts for path in self._containers}
+
+    @cached_property
+    def listed(self) -> tuple[tuple[str, ListedRepository], ...]:
+        """The repositories that files of vcstool and wstool name."""
+        self._extraction.preload(self._lists)
+        files = ((path, self._extraction.get_facts(path).facts) for path in self._lists)
+        return tuple((path, one) for path, facts in files if facts is not None for one in facts.repositories)
 
 
 class Workspace:
@@ -306,6 +316,21 @@ class Workspace:
     def interface_names(self) -> dict[str, set[str]]:
         """Package to the names of its interfaces."""
         return {p.name: {i.name for i in p.linked.interfaces} for p in self if p.linked.interfaces}
+
+    @cached_property
+    def interface_texts(self) -> dict[str, dict[str, str]]:
+        """The constants of messages that are strings, with their values, by `package/Name`."""
+        found: dict[str, dict[str, str]] = {}
+        for package in self:
+            for interface in package.linked.interfaces:
+                sections = interface.definition.sections if interface.definition.kind in ("msg", "idl") else ()
+                constants = (one for section in sections[:1] for one in section.constants)
+                texts = {one.name: one.value for one in constants if one.type.startswith(("string", "wstring"))}
+                if self.ros == 2:  # which takes quotes off: rosidl_parser, parse_primitive_value_string()
+                    texts = {name: value[1:-1] if value[:1] in ("'", '"') else value for name, value in texts.items()}
+                if texts:
+                    found[f"{package.name}/{interface.name}"] = texts
+        return found
 
     @cached_property
     def library_names(self) -> frozenset[str]:

@@ -162,8 +162,29 @@ class Availabilities:
     def _find_use(self, symbol: Symbol) -> Availability | None:
         """How a name is changed, gone or deprecated for how it is used, by the stored surfaces."""
         if isinstance(symbol.use, CppUseForm):
-            return check_use(self.offers, symbol.packages[0], symbol.name, *symbol.use)
+            found = check_use(self.offers, symbol.packages[0], symbol.name, *symbol.use)
+            taken_in = found is not None and found.is_missing and self._may_be_taken_in(symbol.packages[0], symbol.name)
+            return Availability(symbol, "unknown") if taken_in else found
         return self._python_offers.ask(symbol.use, symbol.packages) if symbol.use is not None else None
+
+    def _may_be_taken_in(self, package: str, name: str) -> bool:
+        """Whether a name may be that of another namespace, since the headers of the package open that in the name's own
+        by `using namespace`: one that declares such a name, or of which nothing is known."""
+        offer = self.offers.find_package(package)
+        owner, _, last = name.rpartition("::")
+        for entity in offer.history.iterate_entities(owner, offer.stored) if offer is not None else ():
+            if entity.kind != "using namespace":
+                continue
+            around = owner.split("::") if owner else []
+            space = entity.type.removeprefix("::")
+            head = space.partition("::")[0]
+            if head not in around and self.offers.find_package(head) is None:
+                return True
+            meanings = ("::".join([*around[:length], space, last]) for length in range(len(around), -1, -1))
+            known = (package, head, *(self.offers.list_exports(package) or ()))
+            if any(self.offers.has_name("c++", full, other) for full in meanings for other in known):
+                return True
+        return False
 
     def _find_component(self, symbol: Symbol) -> Availability:
         """A component of a library, by the table of those that went and Debian's configurations."""

@@ -19,6 +19,7 @@ FIXED = (
     "packages/invalid_manifest",
     "packages/misspelt_cmake_name",
     "packages/misspelt_cmake_variable",
+    "packages/misspelt_component__fixed",
     "packages/misspelt_dependency",
     "packages/misspelt_dependency__spelling",
     "packages/misspelt_dependency__system_package",

@@ -1,7 +1,7 @@
 """Launch XML and YAML, xacro, URDF, plugin descriptions, parameter YAML and shell scripts: what they refer to."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 
 import msgspec
@@ -29,14 +29,25 @@ class PluginClass(msgspec.Struct, frozen=True, array_like=True, gc=False):
         return self.library.rpartition("/")[2].removeprefix("lib").removesuffix(".so")
 
 
+class ControlledJoint(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A joint, sensor or gpio that a robot description gives to ros2_control. name: as written, variables included.
+    commands, states: its interfaces, those under conditions too. whole: it has no others, as far as is to be seen."""
+
+    name: str
+    commands: tuple[str, ...]
+    states: tuple[str, ...]
+    whole: bool
+    line: int
+
+
 class ReferenceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """Any file whose only interest is what it mentions. plugins is filled for plugin descriptions. unresolved: mentions
     whose package is only known when the file runs (`$(find-pkg-share $(var robot))`), as written. words: of launch
     files, YAML and robot descriptions, see list_words().
 
     Besides the kinds of Reference in general, `model` is a `model://` path (Gazebo finds it on its own search path).
-    trees: behaviour trees that a file of BehaviorTree.CPP defines, which others include by their name; modelled: nodes
-    of which it lists the ports for editors.
+    joints: of robot descriptions. trees: behaviour trees that a file of BehaviorTree.CPP defines, which others include
+    by their name; modelled: nodes of which it lists the ports for editors.
     generation: of a launch file, as LaunchFile has it; of a script, the one whose commands alone it calls, else 0.
     """
 
@@ -48,6 +59,7 @@ class ReferenceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     generation: int = 0
     trees: tuple[str, ...] = ()
     modelled: tuple[str, ...] = ()
+    joints: tuple[ControlledJoint, ...] = ()
 
 
 PACKAGE = re.compile(r"[A-Za-z][A-Za-z0-9_-]*\Z")
@@ -60,6 +72,10 @@ MENTION = re.compile(
     r"|(?<!\w)find\(\s*['\"](?P<eval>[A-Za-z][\w-]*)['\"]\s*\)"
     r"|\$\(\s*(?P<dynamic>find-pkg-share|find-pkg-prefix|find)\s+\$[({]"
     r"|\$\(\s*command\s+['\"]?(?P<command>[A-Za-z][\w.-]*)(?=[\s'\"])"
+)
+_BY_DISTRO = re.compile(
+    r"\$\(\s*(?:find|find-pkg-share)\s+(?P<package>[A-Za-z][\w-]*)\s*\)(?P<before>/[\w./-]*)"
+    r"\$\(\s*(?:opt)?env\s+ROS_DISTRO[^()]*\)(?P<after>[\w./-]+)"
 )
 MARKS = ("$(", "://", "find(")
 
@@ -105,6 +121,9 @@ class _Found:
                 self.add("command", "", m["command"], at, conditional)
             else:
                 self.unresolved.append(Problem(self.locate(at)[0], text[m.start() : m.start() + 80]))
+        for m in _BY_DISTRO.finditer(text) if "ROS_DISTRO" in text else ():
+            name = f"{m['before'].lstrip('/')}{{distro}}{m['after']}"
+            self.add("distro file", m["package"], name, offset + m.start(), conditional)
 
     def _add_substitution(
         self, verb: str, args: list[str], rest: str | None, after: str, at: int, conditional: bool
@@ -347,7 +366,36 @@ def _read_robot_description(data: bytes) -> ReferenceFile:
         _add_all_mentions(found, element, conditional)
     # xacro reads with Python's strict parser, URDF and SDF are read with TinyXML
     problems = document.problems if "xacro" in document.text else _drop_tolerated(data, document.problems)
-    return found.make_file(*problems)
+    return structs.replace(found.make_file(*problems), joints=tuple(_list_controlled_joints(document)))
+
+
+_INTERFACES = {"command_interface": "commands", "state_interface": "states"}
+_WITHIN_JOINT = frozenset(("param", "xacro:if", "xacro:unless", "min", "max", "initial_value", "limits"))
+
+
+def _list_controlled_joints(document: Document) -> Iterator[ControlledJoint]:
+    """The joints, sensors and gpios with interfaces of ros2_control, in macros too."""
+    if "_interface" not in document.text:
+        return
+    # The joint around each element, by its number; -1 outside of all.
+    around: list[int] = []
+    interfaces: dict[int, dict[str, list[str]]] = {}
+    open_: set[int] = set()
+    for number, element in enumerate(document.elements):
+        parent = around[element.parent] if element.parent >= 0 else -1
+        if parent < 0 and element.name in ("joint", "sensor", "gpio") and element.get("name"):
+            parent = number
+        elif parent >= 0 and (kind := _INTERFACES.get(element.name)):
+            interfaces.setdefault(parent, {}).setdefault(kind, []).append(element.get("name"))
+        elif parent >= 0 and element.name not in _WITHIN_JOINT:
+            open_.add(parent)
+        around.append(parent)
+    for number, found in interfaces.items():
+        element = document.elements[number]
+        names = found.get("commands", []), found.get("states", [])
+        whole = number not in open_ and all(name and "$" not in name for same in names for name in same)
+        line = document.locate(element.offset)[0]
+        yield ControlledJoint(element.get("name"), tuple(names[0]), tuple(names[1]), whole, line)
 
 
 # What an element is called that names its node by `ID`; any other is called like its node.

@@ -14,6 +14,7 @@ from ..markup import find_text_encoding
 from ..place import Problem, Reference
 from ..words import list_words
 from . import python2
+from .branches import BranchedName, list_branched_names, list_distro_files
 from .reader import TRY, AttributeUse, Import, PythonReader
 from .text import drop_surrogates
 from .uses import FieldUse, PythonUse, TypedName
@@ -35,7 +36,8 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     list_words(). unbound: names that nothing in the file binds, and methods, with a dot before, that nothing in it
     defines and only Python 2 has; and what PythonReader.list_misused() lists. bound: names, between spaces, that others
     can import from it; empty where that cannot be known, and two spaces where there are none. typed: what of these
-    shows its type. unknown: members of objects whose types do not show, with the number of places.
+    shows its type. unknown: members of objects whose types do not show, with the number of places. branched: see
+    branches.py, where the `distro file`s among the references are explained too.
     """
 
     imports: tuple[Import, ...]
@@ -52,6 +54,7 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     bound: str = ""
     typed: tuple[TypedName, ...] = ()
     unknown: dict[str, int] = {}
+    branched: tuple[BranchedName, ...] = ()
 
 
 class PythonSource(NamedTuple):
@@ -180,11 +183,13 @@ def extract(data: bytes) -> PythonFile:
             reader.read(tree)
             bound = reader.find_bound_names()
             uses = reader.list_object_uses(reader.find_column)
+            asks = "ROS_DISTRO" in parsed
+            by_distro = tuple(list_distro_files(tree)) if asks else ()
             undecoded = (NEVER_PYTHON, refused, "SyntaxError") if refused else None
             return PythonFile(
                 imports=tuple(reader.imports),
                 attributes=reader.list_attributes(),
-                references=tuple(sorted(reader.references, key=attrgetter("line", "column"))),
+                references=tuple(sorted((*reader.references, *by_distro), key=attrgetter("line", "column"))),
                 python2_only=old or tuple(reader.python2_only),
                 needs=undecoded or (None if old else reader.needs),
                 interpreter=interpreter,
@@ -196,6 +201,7 @@ def extract(data: bytes) -> PythonFile:
                 bound="" if bound is None else f" {' '.join(sorted(bound))} ",
                 typed=reader.list_typed_names(),
                 unknown=reader.unknown,
+                branched=tuple(list_branched_names(tree)) if asks and not old else (),
             )
         except RecursionError:
             problems = (*problems, Problem(1, "nested too deeply"))

@@ -2,14 +2,15 @@
 
 What it does
     Reports packages of whose messages those of a catkin package are made and that it does not name in CATKIN_DEPENDS,
-    message_runtime where messages are generated, and catkin packages that name none at all though their exported
-    headers include those of other packages.
+    message_runtime where messages are generated, packages that its exported headers include and that it finds but does
+    not name there, and catkin packages that name none at all though their exported headers include those of others.
 
 Why it breaks
     The package builds, and dependants do not get what its messages and headers include, unless they find it themselves.
 
 Severity
-    warning; note for messages of packages that come along with roscpp.
+    warning; note for messages of packages that come along with roscpp, and for headers of packages that the distro
+    brings: all of them lie in one folder.
 
 Example
     generate_messages(DEPENDENCIES geometry_msgs)
@@ -39,6 +40,10 @@ _RUNTIME = "message_runtime"
         "headers": Text(
             "an exported header includes `{header}`, but catkin_package() has no CATKIN_DEPENDS",
             "name the packages that the headers and libraries need",
+        ),
+        "header": Text(
+            "an exported header includes `{header}`, but `{subject}` is not in CATKIN_DEPENDS",
+            "add `{subject}` to CATKIN_DEPENDS of catkin_package()",
         ),
         "runtime": Text(
             "messages are generated, but `{subject}` is not in CATKIN_DEPENDS",
@@ -90,9 +95,14 @@ def _find_field_owners(package: Package, files: Collection[str]) -> set[str]:
 
 
 def _list_of_headers(view: TargetView, package: Package) -> Iterator[Diagnostic]:
-    """A package of catkin that hands on no package at all, though headers of others are in what it exports."""
+    """A package of catkin that does not hand on packages whose headers are in what it exports."""
     hows = {e.how for e in package.build.exports}
-    if not hows >= {"include_dirs", "libraries"} or hows & {"catkin_depends", "cfg_extras"}:
+    if "include_dirs" not in hows or "cfg_extras" in hows:
+        return
+    if "catkin_depends" in hows:
+        yield from _list_unnamed(view, package)
+        return
+    if "libraries" not in hows:
         return
     found = package.build.catkin_components
     for need in view.sort_needs(package):
@@ -100,3 +110,22 @@ def _list_of_headers(view: TargetView, package: Package) -> Iterator[Diagnostic]
             at, data = package.build.catkin_package, {"header": need.subject}
             yield Diagnostic(at, "CATKIN_DEPENDS", package.name, data, "headers")
             return
+
+
+def _list_unnamed(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+    """Packages that an exported header includes, of a package that hands on others."""
+    named = {e.item for e in package.build.exports if e.how in ("catkin_depends", "system_depends")}
+    if any("$" in name for name in named):
+        return
+    reach, found = set(view.roles.list_found_with(named)), package.build.catkin_components
+    for need in view.sort_needs(package):
+        if need.how != "include" or not need.public or not need.certain or view.is_met(need.providers, reach):
+            continue
+        name = next((p.name for p in need.providers if p.name in found), "")
+        if not name or name == package.name or need.providers[0].kind != "ros":
+            continue
+        reach.add(name)
+        # What the distro brings lies in one folder, which whoever finds any package of catkin searches.
+        apart = name in view.workspace.packages and package.name in view.workspace.includers
+        data = {"header": need.subject}
+        yield Diagnostic(need.at, name, package.name, data, "header", (apart or Doubt.DISPENSABLE,), together=_ONCE)

@@ -8,7 +8,8 @@ Why it breaks
     `rosdep install` stops with "Cannot locate rosdep definition for [x]", and bloom refuses to release the package.
 
 Severity
-    note for names that may belong to a private repository or to a submodule that was not read; warning for those that
+    note for names that may belong to a private repository, to a submodule that was not read, or to a repository that a
+    .repos or .rosinstall file lists; warning for those that
     nothing in the package uses, that have the form of a key (`python3-x`, `libx-dev`, `x-pip`, `x_1.2`), or that are
     called after the package that declares them.
 
@@ -52,6 +53,11 @@ _KEY = re.compile(r"python3?-[a-z0-9.+-]+|lib[a-z0-9.+-]+-dev|[a-z0-9.+-]+-pip|\
             "{unread}",
             "run `git submodule update --init`, or, if it is your own, add it to `[workspace] private`",
         ),
+        "listed": Text(
+            "no distro releases `{subject}`, rosdep has no such key, and `{listed}` lists its repository, which is not "
+            "imported",
+            "vcs import < {listed}",
+        ),
         "unknown": Text(
             "no distro releases `{subject}`, and rosdep has no such key",
             "if it is your own, add it to `[workspace] private` in rosimpact.toml",
@@ -60,12 +66,14 @@ _KEY = re.compile(r"python3?-[a-z0-9.+-]+|lib[a-z0-9.+-]+-dev|[a-z0-9.+-]+-pip|\
 )
 def unknown_dependency(view: TargetView, package: Package):
     for name, at, _ in list_unknown(view, package):
-        of_submodule = view.may_be_unread(name)
-        if not of_submodule and (name in BUILD_TOOLS or find_intended(view, package, name) is not None):
+        of_submodule, listing = view.may_be_in_submodule(name), view.find_listing(name)
+        if not (of_submodule or listing) and (name in BUILD_TOOLS or find_intended(view, package, name) is not None):
             continue
         unread = view.workspace.outside.unread_submodules
         data = {}
-        if not of_submodule and _KEY.fullmatch(name):
+        if listing is not None and not of_submodule:
+            kind, doubt, data = "listed", Doubt.PRIVATE, {"listed": listing[0]}
+        elif not of_submodule and _KEY.fullmatch(name):
             kind, doubt = "unknown", Doubt.AMBIGUOUS
         elif of_submodule or unread:
             after = [path for path in unread if is_called_after(name, path.rpartition("/")[2])]

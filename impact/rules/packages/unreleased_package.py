@@ -27,15 +27,20 @@ Not reported
 
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
-_HELP = "bring its source into the workspace, or put a condition on the dependency"
+_LISTED = "[[; `{listed}` lists its repository, which is not imported]]"
+_HELP = "[[vcs import < {listed}, or ]]bring its source into the workspace, or put a condition on the dependency"
 
 
 @rule(
     texts={
-        "never": Text("`{subject}` is not released in {distro}[[ (last released in {last})]]", _HELP),
-        "later": Text("`{subject}` was not released in {distro} on that date", _HELP),
-        "dropped": Text("`{subject}` is no longer released in {distro} (since {day})", _HELP),
-        "waiting": Text("`{subject}` waits for the next sync of {distro}", "use ros-testing, or " + _HELP),
+        "never": Text(
+            f"`{{subject}}` is not released in {{distro}}[[ (last released in {{last}})]]{_LISTED}", _HELP
+        ),
+        "later": Text(f"`{{subject}}` was not released in {{distro}} on that date{_LISTED}", _HELP),
+        "dropped": Text(f"`{{subject}}` is no longer released in {{distro}} (since {{day}}){_LISTED}", _HELP),
+        "waiting": Text(
+            f"`{{subject}}` waits for the next sync of {{distro}}{_LISTED}", f"use ros-testing, or {_HELP}"
+        ),
     },
 )
 def unreleased_package(view: TargetView, package: Package):
@@ -50,7 +55,7 @@ def unreleased_package(view: TargetView, package: Package):
             continue  # removed-package or renamed-package says so
         if not target.was_ever_released(name) or view.is_private(name) or view.find_successor(name):
             continue
-        if view.may_be_unread(name):
+        if view.may_be_in_submodule(name):
             continue
         seen.add(name)
         used = any(
@@ -61,11 +66,13 @@ def unreleased_package(view: TargetView, package: Package):
         waits = (testing := target.find_testing()) is not None and testing.find_version(name) is not None
         before = [day for day, version in target.list_releases(name) if day <= target.date and version is None]
         kind = "waiting" if waits else "dropped" if before else "later" if last == target.distro else "never"
+        listing = view.find_listing(name)
+        listed = listing[0] if listing is not None else ""
         yield Diagnostic(
             view.find_place(package, dependency),
             name,
             package.name,
-            {"distro": target.distro, "last": last, "day": before[-1] if before else ""},
+            {"distro": target.distro, "last": last, "day": before[-1] if before else "", "listed": listed},
             kind=kind,
             doubts=(used or Doubt.INCOMPLETE, not (beside or (waits and target.moving)) or Doubt.INCOMPLETE),
         )

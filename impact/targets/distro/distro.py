@@ -501,6 +501,16 @@ class DistroTarget:
         return frozenset(name for (name,) in rows)
 
     @cache_method
+    def list_repository_urls(self, package: str) -> frozenset[str]:
+        """Where the source of the repositories is that have released a package in some distro."""
+        rows = self._data.fetch(
+            "SELECT DISTINCT u.text FROM home h JOIN package p ON p.id = h.package"
+            " JOIN source s ON s.repository = h.repository JOIN url u ON u.id = s.url WHERE p.name = ?",
+            (package,),
+        )
+        return frozenset(url for (url,) in rows)
+
+    @cache_method
     def holds(self, condition: str) -> bool:
         """Whether a manifest condition such as `$ROS_VERSION == 2` holds here. One that cannot be read holds not."""
         here = Environment(self.distro, str(self.ros), (self.python_major, 0))

@@ -7,6 +7,7 @@ than in the Debian release before it nor newer than in the one after it: what bo
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from functools import cache, cached_property, lru_cache, partial
@@ -18,6 +19,7 @@ import msgspec
 
 from ....edges.memory import cache_method
 from ...facts.cpp.lexical import Include
+from ...facts.surface import Entity
 from ..platform import find_neighbours
 from ..surface.includes import choose_path, covers
 from ..surface.store import StoredRows, StoredSurfacesError, SurfaceHistory
@@ -113,6 +115,12 @@ class SystemLibraries:
     def _load_history(self, library: str) -> SurfaceHistory | None:
         data = self._file.query_column("SELECT data FROM package WHERE name = ?", library)
         return SurfaceHistory(library, data[0], b"") if data else None
+
+    def list_declared(self, library: str, platform: str) -> list[Entity]:
+        """What the headers of a library declare for its users on a platform that was read."""
+        data = self._file.query_column("SELECT names FROM package WHERE name = ?", library)
+        version = self.list_versions(library).get(platform, "")
+        return list(SurfaceHistory(library, data[0], b"").list_entities(version)) if data else []
 
     @cache_method
     def find_by_header(self, header: str) -> str:
@@ -219,6 +227,20 @@ class SystemLibraries:
         builds = (self.build(library, version, _NAMED) for version in self.list_versions(library).values())
         return found if any(build is not None and name in build.cmake_names for build in builds) else None
 
+    def list_components(self, library: str, package: str) -> dict[str, frozenset[str]]:
+        """The components of a library's CMake package as its targets (`opencv_core`, `VTK::CommonCore`) or pkg-config
+        files (`pcl_io`) tell them, with the versions that have each; none of fewer than three."""
+        starts = (f"{package}::", f"{package.lower()}_")
+        found: dict[str, set[str]] = {}
+        for version in dict.fromkeys(self.list_versions(library).values()):
+            build = self.build(library, version)
+            names = (*(target.name for target in build.targets), *build.pkgconfig) if build is not None else ()
+            for name in (_VERSION_BEHIND.sub("", name.partition(" ")[0]) for name in names):
+                for start in starts:
+                    if name.startswith(start):
+                        found.setdefault(name[len(start) :], set()).add(version)
+        return {name: frozenset(versions) for name, versions in found.items()} if len(found) > 2 else {}
+
     def _compute_presence(
         self,
         library: str,
@@ -253,6 +275,10 @@ def _spell(header: str, roots: tuple[str, ...]) -> Iterator[str]:
         folder = "/".join(folders[:place])
         if any(f"/{root}".endswith(f"/{folder}") for root in roots):
             yield "/".join(folders[place:])
+
+
+# `pcl_io-1.11`
+_VERSION_BEHIND = re.compile(r"-\d+(?:\.\d+)*\Z")
 
 
 @cache

@@ -6,7 +6,7 @@ remembers it.
 """
 
 import sqlite3
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
@@ -141,6 +141,20 @@ class Providers(ShippedDatabase):
         """Every known CMake package whose name differs from this one in letter case at most."""
         return tuple(self._folded_cmake.get(name.lower(), ()))
 
+    @cache_method
+    def list_configured_components(self, name: str) -> dict[str, tuple[str, ...]]:
+        """The components of a CMake package each of which has a configuration of its own beside the package's
+        (`Qt5Widgets`, `gz-math7-eigen3`), with the platforms that have it; none of a package with fewer than three."""
+        if not self._find_row("cmake", name):
+            return {}
+        found: dict[str, tuple[str, ...]] = {}
+        for other in (other for names in self._folded_cmake.values() for other in names):
+            rest = other[len(name) :] if other.lower().startswith(name.lower()) else ""
+            same = other.startswith(name) and rest[:1].isupper()
+            if same or (rest[:1] in ("-", "_") and other.startswith((name, name.lower()))):
+                found[rest.lstrip("-_")] = self.list_cmake_platforms(other)
+        return found if len(found) >= _FEWEST_COMPONENTS else {}
+
     def find_pkgconfig(self, name: str) -> list[Provider]:
         """Who installs `name.pc`, best first."""
         return _deduplicate(self._find_facts("pkgconfig", name) + self._find_system("pkgconfig", name))
@@ -198,6 +212,17 @@ class Providers(ShippedDatabase):
             for (number,) in self.fetch(f"SELECT provider FROM {table} ORDER BY name")
             if (packages := entries[number])
         ]
+
+    def list_packages_of_names(self) -> Iterator[tuple[tuple[str, ...], int]]:
+        """For every name of the system's packages: the packages that bring it on some platform, best first, and the
+        bits of the platforms that have it."""
+        entries = {
+            number: tuple(dict.fromkeys(p.package for p in _decode(text) if p.package))
+            for number, text in self.fetch("SELECT id, entries FROM provider")
+        }
+        for table in ("header", "cmake", "pkgconfig", "module", "program"):
+            for number, bits in self.fetch(f"SELECT provider, platforms FROM {table}"):
+                yield entries[number], bits
 
     def list_cmake_platforms(self, name: str) -> tuple[str, ...]:
         """Platforms whose system packages bring a CMake configuration or find module of this name."""
@@ -316,6 +341,9 @@ class Providers(ShippedDatabase):
             if name.lower() not in found:
                 found[name.lower()] = [name]
         return found
+
+
+_FEWEST_COMPONENTS = 3
 
 
 def _deduplicate(providers: list[Provider]) -> list[Provider]:

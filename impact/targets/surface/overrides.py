@@ -149,7 +149,7 @@ class Override:
         pairs = list(zip(self.types, overload.types, strict=True))
         if not parameters.isdisjoint(name for type_ in overload.types for name in re.findall(r"\w+", type_)):
             return True
-        return not any(_differs_plainly(one, other) for one, other in pairs)
+        return not any(differs_plainly(one, other) for one, other in pairs)
 
     def _list_entities(self, package: str, name: str, version: str = "") -> list[Entity]:
         """What a version of a package, by default the target's, declares by a name."""
@@ -327,7 +327,7 @@ _PLAIN = re.compile(r"std::(?:string|vector|map|function|shared_ptr|unique_ptr|w
 _MESSAGE = re.compile(r"\w+::(?:msg|srv|action)::\w+")
 
 
-def _differs_plainly(one: str, other: str) -> bool:
+def differs_plainly(one: str, other: str) -> bool:
     """Whether two types are surely not the same, whatever the names in them stand for."""
     bare = [" ".join(re.sub(r"\bconst\b|&", " ", type_).split()) for type_ in (one, other)]
     known = [type_ in _FUNDAMENTAL or type_ == "std::string" or bool(_MESSAGE.fullmatch(type_)) for type_ in bare]

@@ -52,6 +52,32 @@ class PythonThrownError(Exception):
         )
 
 
+class ProgramEndedError(Exception):
+    """A program that runs from its start was followed far enough."""
+
+
+class ProgramRounds:
+    """The loops of a program that runs until somebody stops it: how far they are followed. is_cut: whether one went
+    on."""
+
+    def __init__(self, rounds: int = 3, sleeps: int = 12):
+        self._rounds, self._sleeps = rounds, sleeps
+        self.is_cut = False
+
+    def is_up(self) -> bool:
+        """Whether ROS is up, as a loop asks: for a few rounds."""
+        self._rounds -= 1
+        self.is_cut |= self._rounds < 0
+        return self._rounds >= 0
+
+    def sleep(self) -> None:
+        """Raises ProgramEndedError where the program has slept so often that it is a loop without an end."""
+        self._sleeps -= 1
+        if self._sleeps < 0:
+            self.is_cut = True
+            raise ProgramEndedError
+
+
 class PythonRun:
     """A way that begins with some decisions and goes on by itself. inputs: those of all ways, by path; open_ways: the
     decisions of ways that branch off this one. prepared: what conditions are while a node is made, None where both can
@@ -84,6 +110,8 @@ class PythonRun:
         self._asked = 0
         self.is_preparing = False
         """Whether a node is being made: no way is opened then, and what is undecided raises NotModelledError."""
+        self.program: ProgramRounds | None = None
+        """Where what runs is a program from its start, and no callback."""
 
     # Decisions.
 
@@ -231,6 +259,12 @@ class PythonRun:
             single = z3.fpBVToFP(term, FLOAT32)
             return Real(z3.fpFPToFP(NEAREST, single, FLOAT64), single=single)
         return Real(z3.fpBVToFP(self._get_input(path, InputKind.FLOAT64, 64, True), FLOAT64))
+
+    def note_default(self, path: str, value: Any) -> None:
+        """Keeps what an input is where nobody sets it, where that is a plain value."""
+        known = self.inputs.get(path)
+        if known is not None and isinstance(value, (bool, int, float, str)):
+            self.inputs[path] = known._replace(default=value)
 
     def get_size(self, path: str, most: int) -> Whole:
         """The size of what stands at a path, 0 to most."""
