@@ -77,10 +77,10 @@ def _find_machine_names(tree: ast.Module | ast.FunctionDef, scope: ast.Module | 
             target = statement.targets[0]
             if isinstance(target, ast.Name):
                 found.setdefault(target.id, []).append(statement.value)
-    return {name: values[0] for name, values in found.items() if len(values) == 1 and reads_distro(values[0])}
+    return {name: values[0] for name, values in found.items() if len(values) == 1 and is_distro_read(values[0])}
 
 
-def reads_distro(node: ast.expr) -> bool:
+def is_distro_read(node: ast.expr) -> bool:
     """Whether an expression is the variable of the environment that names the distro."""
     if isinstance(node, ast.Subscript):
         key = node.slice
@@ -221,7 +221,7 @@ def _read_path(node: ast.expr, machine: dict[str, ast.expr], depth: int = 0) -> 
         return "\0"
     if isinstance(node, ast.Constant):
         return node.value if isinstance(node.value, str) else "\0"
-    if (isinstance(node, ast.Name) and node.id in machine) or reads_distro(node):
+    if (isinstance(node, ast.Name) and node.id in machine) or is_distro_read(node):
         return DISTRO
     if isinstance(node, ast.JoinedStr):
         parts = (one.value if isinstance(one, ast.FormattedValue) else one for one in node.values)
