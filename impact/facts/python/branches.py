@@ -200,15 +200,18 @@ def list_distro_files(tree: ast.Module) -> Iterator[Reference]:
         isinstance(node, ast.Attribute) and node.attr in _ASKING for node in ast.walk(tree)
     ):
         return
-    seen: set[int] = set()
-    for node in ast.walk(tree):
-        if not isinstance(node, ast.expr) or node.lineno in seen:
+    waiting: list[ast.AST] = [tree]
+    while waiting:
+        node = waiting.pop()
+        text = _read_path(node, machine) if isinstance(node, ast.expr) else ""
+        if DISTRO not in text:
+            waiting.extend(ast.iter_child_nodes(node))
             continue
-        text = _read_path(node, machine)
-        name = text.rpartition("\0")[2].lstrip("/")
-        if DISTRO in name and "." in name.rpartition("/")[2] and not name.endswith(DISTRO):
-            seen.add(node.lineno)
-            yield Reference("distro file", "", name, node.lineno, node.col_offset + 1)
+        _, unknown, name = text.rpartition("\0")
+        # What is glued to something unknown is not a whole name.
+        whole = DISTRO in name and (not unknown or name.startswith("/")) and isinstance(node, ast.expr)
+        if whole and "." in name.rpartition("/")[2] and not name.endswith(DISTRO):
+            yield Reference("distro file", "", name.lstrip("/"), node.lineno, node.col_offset + 1)
 
 
 # What asks whether a file is there.
