@@ -204,12 +204,12 @@ def list_distro_files(tree: ast.Module) -> Iterator[Reference]:
     while waiting:
         node = waiting.pop()
         text = _read_path(node, machine) if isinstance(node, ast.expr) else ""
-        if DISTRO not in text:
+        if DISTRO not in text or not isinstance(node, ast.expr):
             waiting.extend(ast.iter_child_nodes(node))
             continue
         _, unknown, name = text.rpartition("\0")
         # What is glued to something unknown is not a whole name.
-        whole = DISTRO in name and (not unknown or name.startswith("/")) and isinstance(node, ast.expr)
+        whole = DISTRO in name and (not unknown or name.startswith("/"))
         if whole and "." in name.rpartition("/")[2] and not name.endswith(DISTRO):
             yield Reference("distro file", "", name.lstrip("/"), node.lineno, node.col_offset + 1)
 
