@@ -6,7 +6,8 @@ sources judged it benchmarks/systems/NAME.drawn.jsonl. A record is a fact, never
                is from), certain; verdict: `right`, `wrong name`, `wrong node`, `wrong type`, `none` (nothing such is
                there), `open` (the sources do not tell); why: one clause
     site       a place in C++ or Python code that a search of the text takes for an API call: repo, path, line, role;
-               found: the graph has an endpoint, parameter or timer there, or names the place as not resolved (`named`);
+               found: the graph has an endpoint, parameter or timer there, or names the place as not resolved, or leaves
+               out its file or package and says so (`named`);
                verdict, of those that are not found: `call` or `none` (the text is no such call)
 
 usage: flow_sight.py draw --set NAME --clones FOLDER [--number 20] [--seed 18]
@@ -14,7 +15,7 @@ usage: flow_sight.py draw --set NAME --clones FOLDER [--number 20] [--seed 18]
        flow_sight.py recheck --set NAME --clones FOLDER
 
 `draw` writes the records without verdicts; `score` prints the figures of those that have one; `recheck` prints which
-endpoints that were judged right the graph of today still has, and which wrong ones it still states.
+endpoints that were judged right the graph of today still has, which wrong ones it still states, and which sites it has.
 """
 
 from __future__ import annotations
@@ -92,6 +93,30 @@ def read_graph(clone: mining.Clone, commit: str) -> dict:
         raise GraphFailed(f"{clone.name} at {commit}: graph failed (exit status {done.returncode}): {last}") from None
 
 
+class SeenPlaces:
+    """Where a graph has something. A place counts up to two lines beside it."""
+
+    def __init__(self, found: dict):
+        self._have = defaultdict(set)
+        for listed, role in ROLES.items():
+            self._have[role].update((one["path"], one["line"]) for one in found[listed])
+        self._named = {(one["path"], one["line"]) for one in found["coverage"]["unresolved"]}
+        copies = (one["path"] for one in found["coverage"]["unresolved"] if one["what"] == "package")
+        self._left_out = *found["coverage"]["uncompiled"], *(f"{path.rpartition('/')[0]}/" for path in copies)
+
+    def has(self, role: str, path: str, line: int) -> bool:
+        """Whether it has something of a role there."""
+        return not self._have[role].isdisjoint(_list_near(path, line))
+
+    def names(self, path: str, line: int) -> bool:
+        """Whether it says that it does not understand the place, or leaves out the file, or its package."""
+        return path.startswith(self._left_out) or not self._named.isdisjoint(_list_near(path, line))
+
+
+def _list_near(path: str, line: int) -> set[tuple[str, int]]:
+    return {(path, line + beside) for beside in range(-2, 3)}
+
+
 def is_certain(endpoint: dict, names: dict[str, str]) -> bool:
     """Whether the graph states an endpoint without reserve: its name is known, a node of the workspace runs it, and the
     preprocessor does not leave it out. names: of the nodes, by id; empty for a library that no node runs."""
@@ -121,25 +146,22 @@ def draw(clone: mining.Clone, commit: str, number: int, seed: int) -> Iterator[d
         for one in found[listed] if not one.get("implied") and one.get("topic")
     ]  # fmt: skip
     yield from chance.sample(endpoints, min(number, len(endpoints)))
-    have = defaultdict(set)
-    for listed, role in ROLES.items():
-        for one in found[listed]:
-            have[role].add((one["path"], one["line"]))
-    named = {(one["path"], one["line"]) for one in found["coverage"]["unresolved"]}
+    seen = SeenPlaces(found)
     tree_sites = []
     for entry in tree.list_entries():
         if entry.path.endswith((*_CODE, ".py")) and not _TESTS.search(entry.path):
             tree_sites += [(role, entry.path, line) for role, line in list_sites(entry.path, tree.read(entry.path))]
     for role, path, line in chance.sample(tree_sites, min(number, len(tree_sites))):
-        near = {(path, line + beside) for beside in range(-2, 3)}
         yield {**about, "kind": "site", "role": role, "path": path, "line": line,
-               "found": not near.isdisjoint(have[role]), "named": not near.isdisjoint(named)}  # fmt: skip
+               "found": seen.has(role, path, line), "named": seen.names(path, line)}  # fmt: skip
 
 
 def recheck(clones: Path, systems: list[dict], records: list[dict]) -> int:
     """Prints how many of the judged endpoints the graph of today has, by verdict, and names the right ones it lost and
-    the wrong ones it kept. Returns of how many systems there is no graph, or no clone; these are named too."""
+    the wrong ones it kept; and the same of the sites that are calls, by role. Returns of how many systems there is no
+    graph, or no clone; these are named too."""
     kept: dict[str, Counter[bool]] = defaultdict(Counter)
+    sites_now: dict[str, Counter[str]] = defaultdict(Counter)
     failures = 0
     for system in systems:
         try:
@@ -161,9 +183,27 @@ def recheck(clones: Path, systems: list[dict], records: list[dict]) -> int:
                 if (key in have) != (one["verdict"] == "right"):
                     said = f"{one['role']} {one['name']} of {one['node']}, {one['path']}:{one['line']}"
                     print(f"{one['repo']}: {one['verdict']}, {'still' if key in have else 'no longer'} there: {said}")
+        seen = SeenPlaces(found)
+        for one in records:
+            if one["repo"] == system["repo"] and is_call(one):
+                place = one["role"], one["path"], one["line"]
+                state = "found" if seen.has(*place) else "named" if seen.names(*place[1:]) else "missed"
+                sites_now[one["role"]][state] += 1
+                sites_now[one["role"]]["drawn"] += one["found"]
+                if state != "found":
+                    print(f"{one['repo']}: {one['role']} {state}: {one['path']}:{one['line']}")
     for verdict, count in kept.items():
         print(f"{verdict}: {count[True]} of {sum(count.values())} still stated as certain")
+    for role, states in sorted(sites_now.items()):
+        calls = states["found"] + states["named"] + states["missed"]
+        print(f"{role}: {states['found']} of {calls} found, {states['named']} more named; {states['drawn']} when drawn")
     return failures
+
+
+def is_call(one: dict) -> bool:
+    """Whether a record is of a site that is a call: what the graph has and a search of the text finds is one; readers
+    judged the others."""
+    return one["kind"] == "site" and one.get("verdict", "call" if one["found"] else "") == "call"
 
 
 def score(records: list[dict]) -> None:
@@ -174,10 +214,7 @@ def score(records: list[dict]) -> None:
         verdicts = Counter(one["verdict"] for one in chosen)
         told = sum(verdicts.values()) - verdicts["open"]
         print(f"{title}: {verdicts['right']} of {told} right; {dict(verdicts)}")
-    # What the graph has and a search of the text finds is a call; readers judged the others.
-    sites_of_calls = [
-        one for one in records if one["kind"] == "site" and one.get("verdict", "call" if one["found"] else "") == "call"
-    ]
+    sites_of_calls = [one for one in records if is_call(one)]
     for role in sorted({one["role"] for one in sites_of_calls}):
         calls = [one for one in sites_of_calls if one["role"] == role]
         found, named = sum(one["found"] for one in calls), sum(one["named"] and not one["found"] for one in calls)

@@ -15,6 +15,7 @@ FAMILIES = {
     "packages": "What packages declare, find, build, install and export.",
     "qos": "Quality of service: publishers and subscribers that refuse each other.",
     "sources": "What source files include.",
+    "values": "Values that publishers send and subscribers cannot handle; they run only where selected by name.",
     "versions": "Versions that are asked for, against those that a target has.",
 }
 HEAD = """\

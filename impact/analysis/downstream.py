@@ -45,7 +45,7 @@ from .effects import (
 )
 from .launch_effects import LaunchEffects
 from .message_changes import find_containing_types, list_message_changes
-from .session import link_flow, open_tree
+from .session import link_flow, load_settings, open_tree
 
 EVENTS = frozenset(("subscriber", "service", "action", "timer", "parameter"))
 
@@ -453,6 +453,11 @@ def analyze_impact(
         now = link_flow(path, tree, store, jobs, progress)
         before = link_for_flow(old_tree, store, jobs)
         use_processes((now, before), jobs)
+        systems = load_settings(path, tree, None, follow_links=follow_links).systems
+        if systems:
+            from .systems import choose_systems
+
+            notes = [*notes, *choose_systems(path, systems, ((now, tree), (before, old_tree)))]
         if packages or topics or nodes:
             graphs = [get_flow(workspace).system for workspace in (now, before)]
             known = now.packages.keys() | before.packages.keys()

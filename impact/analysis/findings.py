@@ -266,7 +266,7 @@ def choose_rules(
     """The rules to run. select and ignore hold names of rules, groups or families, or `all`; the more specific wins.
 
     Where both mean a rule as closely, it is ignored. A preview rule runs when previews are asked for or when it, or its
-    group, is selected by name.
+    group, is selected by name; one that takes long when it, its group or its family is.
     Raises SettingsError for a name that is no rule, group or family.
     """
     known = _list_known_names(rules.values())
@@ -277,7 +277,11 @@ def choose_rules(
         name: rule
         for name, rule in rules.items()
         if _rank_specificity(select or EVERYTHING, rule.names) > _rank_specificity(ignore, rule.names)
-        and (preview or not rule.preview or not {*rule.names[:-1]}.isdisjoint(select))
+        and (
+            not {*rule.names}.isdisjoint(select)
+            if rule.on_request
+            else preview or not rule.preview or not {*rule.names[:-1]}.isdisjoint(select)
+        )
     }
 
 

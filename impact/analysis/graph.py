@@ -59,7 +59,7 @@ def build_graphs(
         option, launch, given = f"--system {system}:", found.launch, {**found.arguments, **given}
     with Store() as store:
         workspace = link_flow(path, tree, store, jobs, progress)
-        own = [_parse_launch(path, workspace, tree, option, text) for text in launch]
+        own = [parse_launch(path, workspace, tree, option, text) for text in launch]
         chosen = [one._replace(arguments={**given, **one.arguments}) for one in own]
         how = {"code_alone": code_alone, "jobs": jobs or processes.count_cores()}
         now = make_graph(workspace, store, os.fspath(path), rev, chosen if launch else None, **how)
@@ -128,7 +128,7 @@ def _list_declared(names: frozenset[str], files: int = 1) -> str:
     return f"{who} {', '.join(f'`{name}`' for name in sorted(names)) or 'none'}"
 
 
-def _parse_launch(path: Path, workspace: Workspace, tree: Tree, option: str, text: str) -> ChosenLaunch:
+def parse_launch(path: Path, workspace: Workspace, tree: Tree, option: str, text: str) -> ChosenLaunch:
     """A launch file with its own arguments, from `FILE NAME:=VALUE ...`. Raises CheckError."""
     file, *rest = _ARGUMENT.split(text.strip())
     given = {name: value for name, _, value in (argument.strip().partition(":=") for argument in rest)}

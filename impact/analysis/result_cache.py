@@ -15,12 +15,14 @@ from ..facts.store import Store, encode_rows
 from ..model import tracked_names as watch
 from ..model.cmake.build import At
 from ..model.flow.file_selection import compute_stamp
+from ..model.flow.workspace import get_flow
 from ..model.package import Watched
 from ..model.view import TargetView, UnresolvedUse
 from ..model.workspace import Workspace
 from ..rules.rule import Diagnostic
 from ..source_keys import compute_code_stamp
 from ..targets.changes import index_uses
+from ..targets.providers.compiled import load_compiled
 from ..targets.surface.fields import load_fields
 from ..targets.surface.store import load_shipped
 from ..targets.tables import compute_data_stamp
@@ -50,8 +52,9 @@ def load_tracked_names(store: Store) -> Watched:
         with contextlib.suppress(msgspec.MsgspecError):
             return _unpack_tracked(data)
     names = watch.load_watched()
-    # The table of fields, the surfaces and the uses are read from files of their own, where they are asked.
-    bare = structs.replace(names, fields=None, surfaces=None, uses=None)
+    # The table of fields, the surfaces, the compiled names and the uses are read from files of their own, where they
+    # are asked.
+    bare = structs.replace(names, fields=None, surfaces=None, compiled=None, uses=None)
     store.remember("watched", encode_rows([(name, bare)]))
     return names
 
@@ -60,7 +63,9 @@ def load_tracked_names(store: Store) -> Watched:
 def _unpack_tracked(data: bytes) -> Watched:
     """The names as they were stored. What is derived from them is made once in a process. Raises MsgspecError."""
     known = msgspec.msgpack.decode(data, type=Watched)
-    return structs.replace(known, fields=load_fields(), surfaces=load_shipped(), uses=index_uses)
+    return structs.replace(
+        known, fields=load_fields(), surfaces=load_shipped(), compiled=load_compiled, uses=index_uses
+    )
 
 
 def make_results_key(view: TargetView, rules: Iterable[str], group: Iterable[str]) -> bytes:
@@ -82,7 +87,8 @@ def make_results_key(view: TargetView, rules: Iterable[str], group: Iterable[str
 
 def make_flow_key(workspace: Workspace, before: Workspace | None, rules: Iterable[str]) -> bytes:
     """The key of what these rules say of a workspace's message flow. before: the workspace at the base."""
-    stamps = [compute_stamp(each) for each in (workspace, before) if each is not None]
+    both = [each for each in (workspace, before) if each is not None]
+    stamps = [(compute_stamp(each), sorted(get_flow(each).systems.items())) for each in both]
     return hashlib.sha1(repr((stamps, compute_data_stamp(), sorted(rules))).encode()).digest()
 
 

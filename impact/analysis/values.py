@@ -10,12 +10,17 @@ from ...edges.files import read_text, write_file
 from ..facts.store import Store
 from ..model.flow.graph import Graph
 from ..model.flow.workspace import get_flow, link_for_flow
+from ..tree import Tree
 from ..values.answers import CallbackAnswer, ValuesReport
+from ..values.comparing import ValueChange, compare_values
+from ..values.disk import open_sources
 from ..values.harness.replay import Replayed, is_confirmed
-from ..values.matching import Mismatch, list_mismatches
+from ..values.joining import Joined, describe_units, join_publishers
+from ..values.matching import Mismatch
 from ..values.outcomes import Bounds, Reaction
 from ..values.survey import KINDS, Asked, Survey, make_records
 from ..values.witnesses import WitnessError, WitnessRecord, format_witnesses, parse_witnesses
+from .revision_compare import open_base_tree
 from .session import CheckError, open_tree
 
 _MOST_BYTES = 20_000_000
@@ -23,11 +28,13 @@ _MOST_BYTES = 20_000_000
 
 class ValuesAnswer(NamedTuple):
     """The callbacks that were asked for, and what their publishers send that they do not handle. others: callbacks that
-    were explored for what they publish."""
+    were explored for what they publish. changes: since the base, empty without one; base: what it was asked for as."""
 
     report: ValuesReport
     others: tuple[CallbackAnswer, ...]
     mismatches: tuple[Mismatch, ...]
+    changes: tuple[ValueChange, ...] = ()
+    base: str = ""
 
 
 def explore_values(
@@ -35,11 +42,12 @@ def explore_values(
     kinds: Sequence[str] = ("subscriber",), bounds: Bounds | None = None, replays: bool = False,
     fuzz_seconds: float = 0.0, emit: str = "", out: Path | None = None,
     publishers: bool = True, jobs: int = 1, progress: Callable[[int, int], None] | None = None,
-    follow_links: bool = False,
+    follow_links: bool = False, base: Sequence[str] = (),
 ) -> ValuesAnswer:  # fmt: skip
     """Explores callbacks of the workspace at a path. publishers: whether those callbacks are explored too that publish
-    what these receive. emit: what is written to the folder out besides: `klee`, `tests`, `yaml` or `witnesses`. The
-    others as Survey has them. Raises CheckError and TreeError with a text for the user."""
+    what these receive. base: what the workspace is compared with, as open_base_tree() takes it. emit: what is written
+    to the folder out besides: `klee`, `tests`, `yaml` or `witnesses`. The others as Survey has them. Raises CheckError
+    and TreeError with a text for the user."""
     for kind in kinds:
         if kind not in KINDS:
             raise CheckError(f"--kind {kind}: is none of {', '.join(KINDS)}")
@@ -47,24 +55,42 @@ def explore_values(
     with Store() as store:
         workspace = link_for_flow(tree, store, jobs, None)
         graph = get_flow(workspace).system
-        survey = Survey(path, workspace, graph, bounds or Bounds())
-        asked = Asked(nodes, topics, callbacks, kinds)
-        report = survey.explore(asked, replays=replays, fuzz_seconds=fuzz_seconds, jobs=jobs, progress=progress)
-        if (nodes or topics or callbacks) and not report.callbacks:
-            raise CheckError(f"{_spell(nodes, topics, callbacks)}: no such callback; list them without it")
-        if out is not None:
-            _write(survey, asked, report, emit, out)
-        others: tuple[CallbackAnswer, ...] = ()
-        received = {topic for one in report.callbacks for topic in one.topics}
-        if publishers and received:
-            known = {(one.path, one.line, one.callback) for one in report.callbacks}
-            wanted = _list_publishing(survey, graph, received)
-            found = survey.explore(Asked(kinds=KINDS, places=wanted), jobs=jobs, progress=progress)
-            others = tuple(one for one in found.callbacks if (one.path, one.line, one.callback) not in known)
-        mismatches = list_mismatches([*report.callbacks, *others], graph)
-    own = {(one.path, one.line, one.callback) for one in report.callbacks}
-    kept = [one for one in mismatches if (one.subscriber.path, one.subscriber.line, one.subscriber.callback) in own]
-    return ValuesAnswer(report, others, tuple(kept))
+        with Survey(path, workspace, graph, bounds or Bounds()) as survey:
+            asked = Asked(nodes, topics, callbacks, kinds)
+            report = survey.explore(asked, replays=replays, fuzz_seconds=fuzz_seconds, jobs=jobs, progress=progress)
+            if (nodes or topics or callbacks) and not report.callbacks:
+                raise CheckError(f"{_spell(nodes, topics, callbacks)}: no such callback; list them without it")
+            if out is not None:
+                _write(survey, asked, report, emit, out)
+            joined = join_publishers(survey, report.callbacks, jobs, progress) if publishers else Joined((), ())
+            units: list[Mismatch] = []
+            if publishers:
+                received = {topic for one in report.callbacks for topic in one.topics}
+                narrowed = bool(nodes or topics or callbacks)
+                units = [
+                    one
+                    for one in describe_units(workspace, graph, report.callbacks)
+                    if one.topic in received or not narrowed
+                ]
+            changes: tuple[ValueChange, ...] = ()
+            if base:
+                before, _ = open_base_tree(tree, base)
+                now = [*report.callbacks, *joined.others]
+                changes = tuple(_compare(before, store, asked, publishers, survey.bounds, now, graph, jobs))
+    return ValuesAnswer(report, joined.others, (*joined.mismatches, *units), changes, " ".join(base))
+
+
+def _compare(
+    tree: Tree, store: Store, asked: Asked, publishers: bool, bounds: Bounds, now: Sequence[CallbackAnswer],
+    graph: Graph, jobs: int,
+) -> list[ValueChange]:  # fmt: skip
+    """What changed since a tree."""
+    workspace = link_for_flow(tree, store, jobs, None)
+    old = get_flow(workspace).system
+    with open_sources(tree) as root, Survey(root, workspace, old, bounds) as survey:
+        report = survey.explore(asked, jobs=jobs)
+        others = join_publishers(survey, report.callbacks, jobs).others if publishers else ()
+    return compare_values([*report.callbacks, *others], old, now, graph)
 
 
 def _write(survey: Survey, asked: Asked, report: ValuesReport, emit: str, out: Path) -> None:
@@ -98,15 +124,8 @@ def replay_witnesses(
     tree = open_tree(path, "", follow_links=follow_links)
     with Store() as store:
         workspace = link_for_flow(tree, store, jobs, None)
-        survey = Survey(path, workspace, get_flow(workspace).system, Bounds())
-        return [(record, seen, is_confirmed(record.witness, seen)) for record, seen in survey.replay(records)]
-
-
-def _list_publishing(survey: Survey, graph: Graph, topics: set[str]) -> frozenset[tuple[str, int]]:
-    """Places of the callbacks from which something is published on some topics."""
-    statements = [one for one in graph.publishes if one.topic in topics]
-    files = {one.path for one in statements} | {way.trigger.path for one in statements for way in one.by}
-    return survey.list_places(files)
+        with Survey(path, workspace, get_flow(workspace).system, Bounds()) as survey:
+            return [(record, seen, is_confirmed(record.witness, seen)) for record, seen in survey.replay(records)]
 
 
 def _spell(nodes: Sequence[str], topics: Sequence[str], callbacks: Sequence[str]) -> str:

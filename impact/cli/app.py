@@ -364,7 +364,7 @@ def values(
     topic: list[str] = _make_option("Only callbacks of this topic. May be repeated."),
     callback: list[str] = _make_option("Only this callback, by its name or the end of it. May be repeated."),
     kind: list[str] = _make_option(
-        "Kinds of callbacks: subscriber, service, timer, action [default: subscriber]. May be repeated."
+        "Kinds of callbacks: subscriber, service, timer, action, main [default: subscriber]. May be repeated."
     ),
     text: int = _make_option("Bytes of a text at most.", default=8, min=0, max=64),
     array: int = _make_option("Elements of an array at most.", default=3, min=0, max=64),
@@ -381,6 +381,10 @@ def values(
     workspace: Path = _make_option("With `values replay FILE`: the workspace.", default=Path(".")),
     publishers: bool = _make_option(
         "Explore also what publishes the messages, and compare.", "--publishers/--no-publishers", default=True
+    ),
+    base: list[str] = _make_option(
+        "What is handled, ignored, crashes or is sent otherwise than at the merge base of this revision (PATH=REV for "
+        "one repository, or a pinned .repos file).",
     ),
     follow_links: _FollowLinks = False,
     format: str = _make_option("text or json.", "--format", "-f", default="text"),

@@ -33,7 +33,8 @@ class FlowExpr(msgspec.Struct, frozen=True, array_like=True, gc=False):
     | other | the source, its white space as single blanks, at most 120 characters | of a comprehension, what each
       element is |
 
-    receiver: of a call in C++ that is made on what another call or a made object gives (`QoS(1).reliable()`), that one.
+    receiver: of a call in C++ that is made on what another call or a made object gives (`QoS(1).reliable()`), that one;
+    in Python the literal that a method is called on (`"/".join(names)`).
     """
 
     kind: str

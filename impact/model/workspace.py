@@ -318,6 +318,21 @@ class Workspace:
         return {p.name: {i.name for i in p.linked.interfaces} for p in self if p.linked.interfaces}
 
     @cached_property
+    def interface_texts(self) -> dict[str, dict[str, str]]:
+        """The constants of messages that are strings, with their values, by `package/Name`."""
+        found: dict[str, dict[str, str]] = {}
+        for package in self:
+            for interface in package.linked.interfaces:
+                sections = interface.definition.sections if interface.definition.kind in ("msg", "idl") else ()
+                constants = (one for section in sections[:1] for one in section.constants)
+                texts = {one.name: one.value for one in constants if one.type.startswith(("string", "wstring"))}
+                if self.ros == 2:  # which takes quotes off: rosidl_parser, parse_primitive_value_string()
+                    texts = {name: value[1:-1] if value[:1] in ("'", '"') else value for name, value in texts.items()}
+                if texts:
+                    found[f"{package.name}/{interface.name}"] = texts
+        return found
+
+    @cached_property
     def library_names(self) -> frozenset[str]:
         """What may be the name of a library that a package of it builds, as PluginClass has it."""
         targets = [t for p in self for t in p.build.targets if t.kind not in ("custom", "executable", "test")]

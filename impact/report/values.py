@@ -9,8 +9,9 @@ from typing import Any
 from ...edges.console import format_count, format_json
 from ..analysis.values import ValuesAnswer
 from ..values.answers import CallbackAnswer, CallbackExample, FieldSets, read_example
+from ..values.comparing import CALLBACK
 from ..values.harness.replay import Replayed
-from ..values.matching import SEVERITIES, Mismatch
+from ..values.matching import CRASHING, FRAME, IMPOSSIBLE, SIZE, UNIT, Mismatch
 from ..values.outcomes import Bounds, CodeLine, CrashKind, InputKind, Reaction
 from ..values.projection import FieldValues, format_values
 from ..values.witnesses import WitnessRecord
@@ -25,7 +26,10 @@ _SHOWN = (Reaction.HANDLED, Reaction.LOG_ONLY, Reaction.IGNORED, Reaction.CRASH)
 
 
 def render_values_text(answer: ValuesAnswer, everything: bool = False, style: Style = WIDE) -> str:
-    """The callbacks with the values of their fields, then what does not fit together. everything: no list is cut."""
+    """The callbacks with the values of their fields, then what does not fit together; with a base, what changed since.
+    everything: no list is cut."""
+    if answer.base:
+        return _render_changes(answer, style)
     lines: list[str] = []
     for callback in answer.report.callbacks:
         if everything or not callback.reason:
@@ -36,6 +40,28 @@ def render_values_text(answer: ValuesAnswer, everything: bool = False, style: St
         lines.append("")
     lines += _render_reasons(answer, everything, style)
     lines += lay_out([LinePart(summarize_values(answer))], style, 0, 2)
+    lines += lay_out([LinePart(_describe_bounds(answer.report.bounds), "dim")], style, 0, 2)
+    return "\n".join(lines) + "\n"
+
+
+def _render_changes(answer: ValuesAnswer, style: Style) -> str:
+    """The sets that changed since the base, callback by callback."""
+    lines: list[str] = []
+    last = ("", "", 0)
+    for one in answer.changes:
+        if (one.callback, one.path, one.line) != last:
+            last = (one.callback, one.path, one.line)
+            pieces = [LinePart(one.callback, "bold"), LinePart("", "dim", f"{one.path}:{one.line}")]
+            lines += lay_out(pieces, style, 0, 4)
+        if one.what == CALLBACK:
+            lines += lay_out([LinePart(f"the callback is {one.new}")], style, 2, 6)
+            continue
+        role = next((_ROLES[each] for each in _SHOWN if each.value == one.what), "note")
+        pieces = [LinePart(" ".join(part for part in (one.topic, one.field) if part)), LinePart(one.what, role)]
+        pieces += [LinePart(f"was {one.old or 'nothing'}"), LinePart(f"is {one.new or 'nothing'}")]
+        lines += lay_out(pieces, style, 2, 6)
+    count = format_count(len([one for one in answer.changes if one.what != CALLBACK]), "set")
+    lines += lay_out([LinePart(f"{count} of values changed since {answer.base}")], style, 0, 2)
     lines += lay_out([LinePart(_describe_bounds(answer.report.bounds), "dim")], style, 0, 2)
     return "\n".join(lines) + "\n"
 
@@ -136,32 +162,42 @@ def _spell(value: Any) -> str:
 
 
 def _render_mismatch(one: Mismatch, style: Style) -> Iterator[str]:
-    severity = SEVERITIES[one.kind]
+    severity = one.severity
     pieces = [LinePart(f"{severity}[{one.kind}]", severity), LinePart(one.topic, "bold"), LinePart(_explain(one))]
     yield from lay_out(pieces, style, 0, 4)
-    if one.sender is not None and one.sender.places:
-        place = one.sender.places[0]
-        yield from lay_out(
-            [LinePart("sent by"), LinePart(one.sender.callback), LinePart("", "dim", f"{place.path}:{place.line}")],
-            style,
-            4,
-            8,
-        )
-    place = f"{one.subscriber.path}:{one.subscriber.line}"
-    yield from lay_out(
-        [LinePart("received by"), LinePart(one.subscriber.callback), LinePart("", "dim", place)], style, 4, 8
-    )
+    for hop in one.sender.via if one.sender is not None else ():
+        yield from _render_end(f"first sent on {hop.topic} by", hop.callback, hop.place, style)
+    if one.sender is not None:
+        yield from _render_end("sent by", one.sender.callback, one.sender.places[0], style)
+    if one.subscriber is not None:
+        received = CodeLine(one.subscriber.path, one.subscriber.line)
+        yield from _render_end("received by", one.subscriber.callback, received, style)
     if one.example is not None:
         yield from (f"  {line}" for line in _render_example(one.example, style))
+    elif one.place is not None:
+        yield from _render_end("there", one.why if one.kind != UNIT else f"taken as {one.why}", one.place, style)
+
+
+def _render_end(what: str, callback: str, place: CodeLine, style: Style) -> Iterator[str]:
+    pieces = [LinePart(what), LinePart(callback), LinePart("", "dim", f"{place.path}:{place.line}")]
+    yield from lay_out(pieces, style, 4, 8)
 
 
 def _explain(one: Mismatch) -> str:
-    if one.kind == "crashing-value":
-        return f"`{one.field}` {'is' if one.sure else 'may be'} sent as {one.values}, which crashes a subscriber"
-    if one.kind == "impossible-branch":
+    word = "is" if one.is_sent else "may be"
+    crashes = "crashes" if one.sure else "may crash"
+    if one.kind == SIZE:
+        are = "are" if one.is_sent else "may be"
+        return f"arrays {are} sent with sizes at which a subscriber {crashes}: {one.values}"
+    if one.kind == UNIT:
+        reader = "a subscriber takes it as" if one.subscriber is not None else "REP-103 says"
+        return f"`{one.field}` is sent in {one.values}; {reader} {one.why}"
+    if one.kind == CRASHING:
+        return f"`{one.field}` {word} sent as {one.values}, at which a subscriber {crashes}"
+    if one.kind == IMPOSSIBLE:
         return f"a subscriber waits for `{one.field}` = {one.values}, which nobody sends"
     what = "ignores" if one.sure else "does not handle"
-    value = f"frame {one.values}" if one.kind == "frame-mismatch" else one.values
+    value = f"frame {one.values}" if one.kind == FRAME else one.values
     return f"`{one.field}` is sent as {value}, which a subscriber {what}"
 
 
@@ -198,6 +234,8 @@ def render_values_json(answer: ValuesAnswer, version: str) -> str:
         "offline": answer.report.is_offline,
         "callbacks": [_describe_callback(one) for one in answer.report.callbacks],
         "mismatches": [_describe_mismatch(one) for one in answer.mismatches],
+        "base": answer.base,
+        "changes": [one._asdict() for one in answer.changes],
     }  # fmt: skip
     return format_json(document) + "\n"
 
@@ -255,13 +293,20 @@ def _describe_example(one: CallbackExample) -> dict[str, Any]:
 
 def _describe_mismatch(one: Mismatch) -> dict[str, Any]:
     return {
-        "rule": one.kind, "severity": SEVERITIES[one.kind], "topic": one.topic, "type": one.message_type,
+        "rule": one.kind, "severity": one.severity, "topic": one.topic, "type": one.message_type,
         "field": one.field, "values": one.values, "sure": one.sure,
         "publisher": None if one.sender is None else {
             "callback": one.sender.callback,
             "places": [{"path": place.path, "line": place.line} for place in one.sender.places],
+            "via": [
+                {"callback": hop.callback, "topic": hop.topic, "path": hop.place.path, "line": hop.place.line}
+                for hop in one.sender.via
+            ],
         },
-        "subscriber": {"callback": one.subscriber.callback, "path": one.subscriber.path, "line": one.subscriber.line},
+        "where": None if one.place is None else {"what": one.why, "path": one.place.path, "line": one.place.line},
+        "subscriber": None if one.subscriber is None else {
+            "callback": one.subscriber.callback, "path": one.subscriber.path, "line": one.subscriber.line,
+        },
         "example": None if one.example is None else _describe_example(one.example),
     }  # fmt: skip
 

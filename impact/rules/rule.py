@@ -39,6 +39,7 @@ from __future__ import annotations  # docs/queries.md shows types by the names t
 import importlib
 import pkgutil
 import re
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from typing import Any, Literal, NamedTuple
@@ -163,7 +164,7 @@ class Rule(NamedTuple):
     family: its folder. severity: the usual one. scope: see the module. preview: its precision is not measured yet, or
     too low. doubts: what speaks against an error in all of its diagnostics. group: the rule that it was a part of
     before, empty otherwise. texts: templates by kind of diagnostic. yields_to: rules that say the same with more
-    weight.
+    weight. on_request: it runs only where it, its group or its family is selected by name.
     """
 
     name: str
@@ -177,6 +178,7 @@ class Rule(NamedTuple):
     group: str = ""
     texts: Mapping[str, Text] = {}
     yields_to: tuple[str, ...] = ()
+    on_request: bool = False
 
     @property
     def groups(self) -> tuple[str, ...]:
@@ -237,6 +239,7 @@ def rule(
     group: str = "",
     preview: bool = False,
     yields_to: tuple[str, ...] = (),
+    on_request: bool = False,
 ):
     """Registers the decorated generator as a rule; the module's docstring tells how it is called.
 
@@ -247,7 +250,8 @@ def rule(
     to hold for this one. preview: it runs only when asked for, since its precision is not measured
     yet or, by benchmarks/verdicts.py, surely below 9 in 10. yields_to:
     rules of the scopes `package` and `target` that tell the same cause with more weight: where one of them reports a
-    place on a target, this rule's diagnostics of that place are left out there.
+    place on a target, this rule's diagnostics of that place are left out there. on_request: it takes much longer than
+    others, and runs only where it, its group or its family is selected by name; not with `all`.
     """
 
     def register(function):
@@ -259,7 +263,7 @@ def rule(
         documentation = _tell_severity(module.__doc__ or "", usual)
         by_kind = {"": texts} if isinstance(texts, Text) else texts
         _RULES[name] = Rule(
-            name, parts[-2], usual, run, documentation, called, preview, doubts, group, by_kind, yields_to
+            name, parts[-2], usual, run, documentation, called, preview, doubts, group, by_kind, yields_to, on_request
         )
         return function
 
@@ -309,7 +313,8 @@ def group_rules(rules: Mapping[str, Rule]) -> dict[str, list[Rule]]:
 def import_rules() -> Iterator[None]:
     """Imports the modules of all families, one in each step."""
     for name in _list_modules():
-        importlib.import_module(name)
+        if name not in sys.modules:
+            importlib.import_module(name)
         yield
 
 

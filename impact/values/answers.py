@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from .ir.terms import read_signed, unpack_float
 from .outcomes import NOWHERE, Bounds, CodeLine, CrashKind, InputKind, Reaction
@@ -56,13 +57,28 @@ class SentValues:
     is_known: bool
 
 
+class SentWay(NamedTuple):
+    """A message that a callback publishes on one way. exact: the values of fields that are the same whatever comes in,
+    by path; sizes as `path.size`, bytes of texts as `path[0]`. is_assumed: something was taken for granted on the way.
+    asks: inputs on which it depends whether the way is taken: of the message that came in, of the node's state.
+    """
+
+    exact: Mapping[str, int | float]
+    place: CodeLine
+    is_assumed: bool
+    asks: frozenset[str] = frozenset()
+
+
 @dataclass(frozen=True)
 class SentThrough:
-    """What a callback publishes through one publisher. publisher: its name in the code; places: of the statements."""
+    """What a callback publishes through one publisher. publisher: its name in the code; places: of the statements.
+    ways: those with different exact values, at most a few; is_listed: whether these are all."""
 
     publisher: str
     places: tuple[CodeLine, ...]
     fields: tuple[SentValues, ...]
+    ways: tuple[SentWay, ...] = ()
+    is_listed: bool = False
 
 
 @dataclass(frozen=True)

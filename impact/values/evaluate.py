@@ -10,6 +10,7 @@ from typing import NamedTuple
 import z3
 
 from .answers import CallbackExample, FieldSets, SentThrough, SentValues
+from .narrowing import ParameterValues, list_sent_ways, narrow_to_parameters
 from .outcomes import CallbackPath, CodeLine, Exploration, InputKind, Reaction, Sent, SymbolicInput
 from .projection import FieldValues, make_witness, project_fields
 from .sent_values import project_sent_number
@@ -33,14 +34,17 @@ class Evaluated(NamedTuple):
     """Types of messages that the callback had to do with."""
 
 
-def evaluate(exploration: Exploration, names: Mapping[str, Mapping[int, str]], seconds: float = 10.0) -> Evaluated:
+def evaluate(
+    exploration: Exploration, names: Mapping[str, Mapping[int, str]], seconds: float = 10.0,
+    parameters: ParameterValues | None = None,
+) -> Evaluated:  # fmt: skip
     """Value sets, examples and sent values of an exploration. names: of constants, by type of the field and
-    value. seconds: for the value sets, and again for what is sent."""
+    value. seconds: for the value sets, and again for what is sent. parameters: as far as known, for what is sent."""
     counts = dict(Counter(path.result for path in exploration.paths))
     unknown = dict(Counter(path.reason for path in exploration.paths if path.result is Reaction.UNKNOWN))
     assumed = tuple(sorted({name for path in exploration.paths for name in path.assumed}))
     fields = tuple(_list_fields(exploration, names, seconds))
-    sent = tuple(_list_sent(exploration, seconds))
+    sent = tuple(list_sent(narrow_to_parameters(exploration, parameters), seconds))
     return Evaluated(
         counts,
         fields,
@@ -87,15 +91,15 @@ def _list_examples(exploration: Exploration) -> list[CallbackExample]:
     return sorted(found.values(), key=lambda one: (one.result is not Reaction.CRASH, one.place))
 
 
-def _list_sent(exploration: Exploration, seconds: float) -> list[SentThrough]:
-    """Per publisher, the values of each field over all ways that publish through it."""
-    ways: dict[str, list[tuple[CallbackPath, Sent]]] = {}
+def list_sent(exploration: Exploration, seconds: float) -> list[SentThrough]:
+    """Per publisher and statement, the values of each field over all ways that publish through it."""
+    ways: dict[tuple[str, CodeLine], list[tuple[CallbackPath, Sent]]] = {}
     for path in exploration.paths:
         for one in path.sent:
-            ways.setdefault(one.publisher, []).append((path, one))
+            ways.setdefault((one.publisher, one.place), []).append((path, one))
     is_whole = not exploration.left and not any(path.result is Reaction.UNKNOWN for path in exploration.paths)
     found: list[SentThrough] = []
-    for publisher, rows in ways.items():
+    for (publisher, place), rows in ways.items():
         kinds: dict[str, tuple[InputKind, int, bool]] = {}
         for _, one in rows:
             kinds.update(one.kinds)
@@ -107,8 +111,8 @@ def _list_sent(exploration: Exploration, seconds: float) -> list[SentThrough]:
                 name = path if path in kinds else f"{path}.size"
                 everywhere = all(name in one.values for _, one in rows)
                 fields.append(SentValues(path, *kind, values, is_whole and everywhere))
-        places = tuple(dict.fromkeys(one.place for _, one in rows))
-        found.append(SentThrough(publisher, places, tuple(fields)))
+        exact, is_listed = list_sent_ways(exploration, rows)
+        found.append(SentThrough(publisher, (place,), tuple(fields), exact, is_listed))
     return found
 
 

@@ -57,7 +57,8 @@ class InputKind(enum.Enum):
 class SymbolicInput(NamedTuple):
     """One symbolic value. path: `msg.pose.position.x`, `msg.ranges[2]`, `msg.data.size`, `msg.data[0]` (a byte of a
     text), `this.enabled_` (a member of the node), `~now` (what the callback asks of its surroundings). term: a bit
-    vector of `bits` bits (floats by their IEEE bits). most: largest value of a SIZE, 0 otherwise."""
+    vector of `bits` bits (floats by their IEEE bits). most: largest value of a SIZE, 0 otherwise. default: of a
+    parameter, the value that the code gives it, as a text, a number or a truth value."""
 
     path: str
     kind: InputKind
@@ -65,6 +66,7 @@ class SymbolicInput(NamedTuple):
     is_signed: bool
     term: z3.BitVecRef
     most: int = 0
+    default: str | float | None = None
 
 
 class CodeLine(NamedTuple):
@@ -145,7 +147,7 @@ class UnknownFunction(NamedTuple):
 class Exploration:
     """All that was found out about one callback. left: ways that were begun and not ended (time or number of paths);
     where it is not 0, nothing is surely ignored. functions: variables that stand for what z3 does not know (the sine of
-    a term), with what calculates them."""
+    a term), with what calculates them. fixed: inputs that have one value, where it was narrowed to that."""
 
     inputs: dict[str, SymbolicInput] = field(default_factory=dict)
     paths: list[CallbackPath] = field(default_factory=list)
@@ -154,6 +156,7 @@ class Exploration:
     instructions: int = 0
     seconds: float = 0.0
     functions: dict[str, UnknownFunction] = field(default_factory=dict)
+    fixed: Mapping[str, int] = field(default_factory=dict)
 
 
 class Witness(NamedTuple):

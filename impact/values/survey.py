@@ -16,8 +16,9 @@ from ..facts.python import source
 from ..model.flow.graph import Graph
 from ..model.flow.workspace import list_code
 from ..model.workspace import Workspace
-from .answers import CallbackAnswer, CallbackExample, ValuesReport
-from .evaluate import Evaluated, evaluate
+from .answers import CallbackAnswer, CallbackExample, SentThrough, ValuesReport
+from .evaluate import Evaluated, evaluate, list_sent
+from .field_types import find_integer
 from .harness.callbacks import CppCallback, list_callbacks
 from .harness.compile import CannotCompile
 from .harness.fuzzing import run_fuzzer
@@ -25,14 +26,24 @@ from .harness.interfaces import KnownInterfaces, list_constants
 from .harness.replay import Replayed, is_confirmed
 from .harness.session import HarnessSession, PreparedCallback, is_asked
 from .ir.explore import explore
+from .narrowing import (
+    GivenMessage,
+    MessageOutcome,
+    ParameterValues,
+    judge_message,
+    narrow_to_messages,
+    narrow_to_parameters,
+)
 from .outcomes import Bounds, CodeLine, Exploration, InputKind, Reaction, Witness
 from .python.explore import CallbackCode, explore_callback
 from .python.messages import Messages
 from .python.modules import ModuleCode
+from .python.programs import explore_program
 from .python.replay import ReplayPlace, list_folders, replay_witness
+from .settings import find_parameters
 from .witnesses import WitnessRecord, format_publish_command, write_tests
 
-KINDS = ("subscriber", "service", "timer", "action")
+KINDS = ("subscriber", "service", "timer", "action", "main")
 _ANY_NUMBER = (InputKind.INTEGER, 64, False)
 Progress = Callable[[int, int], None]
 
@@ -59,14 +70,71 @@ class _Target:
     prepared: PreparedCallback | None = None
     code: CallbackCode | None = None
     types: tuple[str, ...] = ()
+    parameters: ParameterValues | None = None
+
+    @property
+    def key(self) -> CallbackKey:
+        return get_key(self.answer)
+
+
+class CallbackKey(NamedTuple):
+    """What tells a callback from all others of a workspace."""
+
+    kind: str
+    path: str
+    line: int
+    callback: str
+    type: str
+    topics: tuple[str, ...]
+
+
+def get_key(answer: CallbackAnswer) -> CallbackKey:
+    """Of an answer."""
+    return CallbackKey(answer.kind, answer.path, answer.line, answer.callback, answer.message_type, answer.topics)
+
+
+class Request(NamedTuple):
+    """A callback, and messages that it is given. is_joined: whether what it sends is asked for, too."""
+
+    key: CallbackKey
+    messages: tuple[GivenMessage, ...]
+    is_joined: bool
+
+
+class Judged(NamedTuple):
+    """What follows from each message of a request, what is sent then, and what is sent if one of them comes, None where
+    that is not known."""
+
+    outcomes: tuple[MessageOutcome, ...]
+    sent: tuple[tuple[SentThrough, ...], ...]
+    together: tuple[SentThrough, ...] | None
 
 
 class Survey:
-    """Explores the callbacks of one workspace. root: its folder on disk, for what is compiled and run."""
+    """Explores the callbacks of one workspace. root: its folder on disk, for what is compiled and run. To be closed."""
 
     def __init__(self, root: Path, workspace: Workspace, graph: Graph, bounds: Bounds):
         self.root, self.workspace, self.graph, self.bounds = root.resolve(), workspace, graph, bounds
         self._definitions = KnownInterfaces(workspace)
+        self._session: HarnessSession | None = None
+        self._known: dict[CallbackKey, _Target] = {}
+
+    def __enter__(self) -> Survey:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Removes what was compiled."""
+        if self._session is not None:
+            self._session.close()
+        self._session = None
+
+    def _open_session(self) -> HarnessSession:
+        if self._session is None:
+            self._session = HarnessSession(self.root, self.workspace, self.graph, self.bounds)
+        return self._session
 
     def explore(
         self, asked: Asked, *, replays: bool = False, fuzz_seconds: float = 0.0, jobs: int = 1,
@@ -77,43 +145,60 @@ class Survey:
         for which each C++ callback is fuzzed besides; 0 for not."""
         found: list[CallbackAnswer] = []
         offline: list[bool] = []
-        with HarnessSession(self.root, self.workspace, self.graph, self.bounds) as session:
-            targets = [*self._list_cpp(session, asked), *self._list_python(asked)]
-            ready = [number for number, one in enumerate(targets) if not one.answer.reason]
-            found = [one.answer for one in targets]
-            results = run_forked(_explore_target, ready, jobs, targets, self._make_messages(), self._modules)
-            for done, (number, result) in enumerate(results, 1):
-                target = targets[number]
-                answer = _read_result(target.answer, result, self.root)
-                if isinstance(result, Evaluated):
-                    target.types = result.asked
-                if replays and answer.examples:
-                    answer, is_offline = self._replay(target, answer)
-                    offline.append(is_offline)
-                if fuzz_seconds and target.prepared is not None:
-                    answer = _run_fuzzer(target.prepared, answer, fuzz_seconds)
-                found[number] = answer
-                if progress is not None:
-                    progress(done, len(ready))
+        targets = [*self._list_cpp(self._open_session(), asked), *self._list_python(asked)]
+        ready = [number for number, one in enumerate(targets) if not one.answer.reason]
+        found = [one.answer for one in targets]
+        for target in targets:
+            target.parameters = find_parameters(self.workspace, target.answer.nodes)
+            self._known[target.key] = target
+        results = run_forked(_explore_target, ready, jobs, targets, self._make_messages(), self._modules)
+        for done, (number, result) in enumerate(results, 1):
+            target = targets[number]
+            answer = _read_result(target.answer, result, self.root)
+            if isinstance(result, Evaluated):
+                target.types = result.asked
+            if replays and answer.examples:
+                answer, is_offline = self._replay(target, answer)
+                offline.append(is_offline)
+            if fuzz_seconds and target.prepared is not None:
+                answer = _run_fuzzer(target.prepared, answer, fuzz_seconds)
+            found[number] = answer
+            if progress is not None:
+                progress(done, len(ready))
         found.sort(key=lambda one: (one.path, one.line, one.callback))
         return ValuesReport(tuple(found), self.bounds, replays, all(offline) if offline else None)
+
+    def judge(self, requests: Sequence[Request], jobs: int = 1) -> dict[CallbackKey, Judged]:
+        """What follows from messages that callbacks are given, which explore() has met; those that cannot be told are
+        left out."""
+        found: dict[CallbackKey, Judged] = {}
+        ready = [one for one in requests if one.key in self._known and not self._known[one.key].answer.reason]
+        numbers = list(range(len(ready)))
+        messages = self._make_messages()
+        for number, result in run_forked(_judge_target, numbers, jobs, ready, self._known, messages, self._modules):
+            if isinstance(result, Judged):
+                found[ready[number].key] = _shorten_places(result, self.root)
+        return found
 
     def replay(self, records: Sequence[WitnessRecord]) -> list[tuple[WitnessRecord, Replayed]]:
         """Runs recorded witnesses for real, as explore() does with its own. Those whose callback is not there any
         longer, or cannot be compiled, are unknown, with the reason."""
         found: list[tuple[WitnessRecord, Replayed]] = []
-        with HarnessSession(self.root, self.workspace, self.graph, self.bounds) as session:
-            for record in records:
+        prepared: dict[tuple[str, str], list[_Target]] = {}
+        for record in records:
+            key = record.callback, record.kind
+            if key not in prepared:
                 asked = Asked(callbacks=(record.callback,), kinds=(record.kind,))
-                rows = [*self._list_cpp(session, asked), *self._list_python(asked)]
-                target = next((one for one in rows if one.answer.path == record.path), rows[0] if rows else None)
-                if target is None:
-                    seen = Replayed(Reaction.UNKNOWN, reason=f"no callback {record.callback} in {record.path}")
-                elif target.answer.reason:
-                    seen = Replayed(Reaction.UNKNOWN, reason=target.answer.reason)
-                else:
-                    seen = self._replay_one(target, record.witness)
-                found.append((record, seen))
+                prepared[key] = [*self._list_cpp(self._open_session(), asked), *self._list_python(asked)]
+            rows = prepared[key]
+            target = next((one for one in rows if one.answer.path == record.path), rows[0] if rows else None)
+            if target is None:
+                seen = Replayed(Reaction.UNKNOWN, reason=f"no callback {record.callback} in {record.path}")
+            elif target.answer.reason:
+                seen = Replayed(Reaction.UNKNOWN, reason=target.answer.reason)
+            else:
+                seen = self._replay_one(target, record.witness)
+            found.append((record, seen))
         return found
 
     def _replay_one(self, target: _Target, witness: Witness) -> Replayed:
@@ -133,11 +218,10 @@ class Survey:
     def emit_klee(self, asked: Asked, folder: Path) -> list[Path]:
         """Writes the harnesses of the C++ callbacks that are asked for, for KLEE; gives their folders."""
         made: list[Path] = []
-        with HarnessSession(self.root, self.workspace, self.graph, self.bounds) as session:
-            for number, target in enumerate(self._list_cpp(session, asked)):
-                if target.prepared is not None and not target.answer.reason:
-                    name = "".join(each if each.isalnum() else "_" for each in target.answer.callback)
-                    made.append(target.prepared.emit_klee(folder / f"{number:02d}_{name}").folder)
+        for number, target in enumerate(self._list_cpp(self._open_session(), asked)):
+            if target.prepared is not None and not target.answer.reason:
+                name = "".join(each if each.isalnum() else "_" for each in target.answer.callback)
+                made.append(target.prepared.emit_klee(folder / f"{number:02d}_{name}").folder)
         return made
 
     def write_tests(self, records: Sequence[WitnessRecord]) -> dict[str, str]:
@@ -156,14 +240,16 @@ class Survey:
     # C++.
 
     def _list_cpp(self, session: HarnessSession, asked: Asked) -> Iterator[_Target]:
-        prepared = session.prepare(nodes=asked.nodes, topics=asked.topics, callbacks=asked.callbacks, kinds=asked.kinds)
+        prepared = session.prepare(
+            nodes=asked.nodes, topics=asked.topics, callbacks=asked.callbacks, kinds=asked.kinds, places=asked.places
+        )
         for one in prepared:
             path, line = one.function_place
             answer = CallbackAnswer(
                 one.callback, one.kind, "cpp", path, line, one.message_type, one.topics, one.nodes, self.bounds,
                 one.reason, stood_for=one.stood_for,
             )  # fmt: skip
-            yield _Target(answer, _name_constants(one.constants), one)
+            yield _Target(answer, _name_constants(one.constants, self.workspace.ros), one)
 
     # Python.
 
@@ -214,12 +300,15 @@ class Survey:
             if module is None:
                 yield _Target(replace(answer, reason=f"{path} cannot be read"), {})
                 continue
-            code = CallbackCode(module, one.name, line, one.message_type)
+            # The top of a module has no name.
+            name = one.site.name if one.kind == "main" else one.name
+            code = CallbackCode(module, name, line, one.message_type)
             yield _Target(answer, self._name_python_constants(one.message_type), code=code)
 
     def _name_python_constants(self, type_: str) -> Mapping[str, Mapping[int, str]]:
         package, _, name = type_.partition("/")
-        return _name_constants(list_constants(self._definitions, f"{package}/msg/{name}")) if name else {}
+        found = list_constants(self._definitions, f"{package}/msg/{name}") if name else {}
+        return _name_constants(found, self.workspace.ros)
 
     # Replays.
 
@@ -300,7 +389,8 @@ def _refuse(callback: CppCallback) -> str:
         return f"{place}: the callback is not known"
     if callback.kind in ("service", "action"):
         return f"{place}: callbacks of a {callback.kind} in Python are not explored"
-    return "" if callback.message_type or callback.kind == "timer" else f"{place}: the type of its message is not known"
+    is_known = callback.message_type or callback.kind in ("timer", "main")
+    return "" if is_known else f"{place}: the type of its message is not known"
 
 
 def _explore_target(
@@ -308,22 +398,80 @@ def _explore_target(
 ) -> Evaluated:
     """What one callback does; runs in a process of its own."""
     target = targets[number]
-    found: Exploration
+    found = _explore(target, messages, modules)
+    evaluated = evaluate(found, target.names, parameters=target.parameters)
+    return evaluated if target.prepared is not None else evaluated._replace(asked=tuple(sorted(messages.asked)))
+
+
+def _explore(target: _Target, messages: Messages, modules: Mapping[str, ModuleCode]) -> Exploration:
     if target.prepared is not None:
-        bounds = target.answer.bounds
-        found = explore(target.prepared.ir_texts, target.prepared.entry, bounds, target.prepared.is_workspace_file)
-    else:
-        assert target.code is not None
-        found = explore_callback(target.code, messages, modules.get, target.answer.bounds)
-        return evaluate(found, target.names)._replace(asked=tuple(sorted(messages.asked)))
-    return evaluate(found, target.names)
+        bounds, own = target.answer.bounds, target.prepared
+        found = _explore_entries(own, bounds)
+        if target.answer.kind == "main":
+            found.left += 1  # its loops were followed for two rounds
+        return found
+    assert target.code is not None
+    follow = explore_program if target.answer.kind == "main" else explore_callback
+    return follow(target.code, messages, modules.get, target.answer.bounds)
+
+
+def _judge_target(
+    requests: Sequence[Request], targets: Mapping[CallbackKey, _Target], messages: Messages,
+    modules: Mapping[str, ModuleCode], number: int,
+) -> Judged:  # fmt: skip
+    """What one callback does with messages; runs in a process of its own."""
+    request = requests[number]
+    target = targets[request.key]
+    found = _explore(target, messages, modules)
+    outcomes = tuple(judge_message(found, one) for one in request.messages)
+    if not request.is_joined:
+        return Judged(outcomes, (), None)
+    sending = narrow_to_parameters(found, target.parameters)
+    fixed = sending.fixed
+    sent: list[tuple[SentThrough, ...]] = []
+    for one in request.messages:
+        narrowed = narrow_to_messages(sending, [one])
+        if narrowed is not None:
+            narrowed = replace(narrowed, fixed={**fixed, **narrowed.fixed})
+        sent.append(tuple(list_sent(narrowed, 3.0)) if narrowed is not None else ())
+    together = narrow_to_messages(sending, request.messages)
+    return Judged(outcomes, tuple(sent), None if together is None else tuple(list_sent(together, 5.0)))
+
+
+def _shorten_places(judged: Judged, root: Path) -> Judged:
+    def shorten(rows: Sequence[SentThrough]) -> tuple[SentThrough, ...]:
+        return tuple(_shorten_sent(one, root) for one in rows)
+
+    outcomes = tuple(
+        one._replace(crashes=tuple(each._replace(place=_shorten_place(each.place, root)) for each in one.crashes))
+        for one in judged.outcomes
+    )
+    together = shorten(judged.together) if judged.together is not None else None
+    return Judged(outcomes, tuple(map(shorten, judged.sent)), together)
+
+
+def _shorten_sent(sent: SentThrough, root: Path) -> SentThrough:
+    ways = tuple(one._replace(place=_shorten_place(one.place, root)) for one in sent.ways)
+    return replace(sent, places=tuple(_shorten_place(place, root) for place in sent.places), ways=ways)
+
+
+def _explore_entries(prepared: PreparedCallback, bounds: Bounds) -> Exploration:
+    """What comes of the first entry that leads to a verdict; of the first of all where none does."""
+    first: Exploration | None = None
+    for entry in (prepared.entry, *(one.name for one in prepared.others)):
+        found = explore(prepared.ir_texts, entry, bounds, prepared.is_workspace_file)
+        if any(path.result is not Reaction.UNKNOWN for path in found.paths):
+            return found
+        first = first or found
+    assert first is not None
+    return first
 
 
 def _read_result(answer: CallbackAnswer, result: Evaluated | Died, root: Path) -> CallbackAnswer:
     if isinstance(result, Died):
         return replace(answer, reason=f"the exploration ended early: {result.why}")
     examples = tuple(replace(one, place=_shorten_place(one.place, root)) for one in result.examples)
-    sent = tuple(replace(one, places=tuple(_shorten_place(place, root) for place in one.places)) for one in result.sent)
+    sent = tuple(_shorten_sent(one, root) for one in result.sent)
     return replace(
         answer, counts=result.counts, fields=result.fields, examples=examples, sent=sent,
         unknown=result.unknown, assumed=result.assumed, left=result.left, seconds=result.seconds,
@@ -345,12 +493,14 @@ def _judge(example: CallbackExample, witness: Witness, seen: Replayed) -> Callba
     return replace(example, confirmed=False, note=f"the replay saw: {what}")
 
 
-def _name_constants(constants: Mapping[str, tuple[str, str]]) -> Mapping[str, Mapping[int, str]]:
+def _name_constants(constants: Mapping[str, tuple[str, str]], ros: int) -> Mapping[str, Mapping[int, str]]:
     """Names of constants by the type of the fields that they are for, `uint8`."""
     found: dict[str, dict[int, str]] = {}
     for name, (type_, value) in constants.items():
         with suppress(ValueError):
-            found.setdefault({"byte": "int8", "char": "uint8"}.get(type_, type_), {}).setdefault(int(value, 0), name)
+            number = find_integer(type_, ros)
+            key = f"{'int' if number.is_signed else 'uint'}{number.bits}" if number is not None else type_
+            found.setdefault(key, {}).setdefault(int(value, 0), name)
     return found
 
 

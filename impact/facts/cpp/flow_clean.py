@@ -199,6 +199,16 @@ def _blank_group(match: re.Match[str], sign: str = " ") -> str:
 _word_group = partial(_blank_group, sign="x")
 
 
+def _blank_lone(match: re.Match[str]) -> str:
+    """A macro alone on its line as blanks, where what stands before it is complete and what follows begins anew."""
+    text, (first, last) = match.string, match.span("gone")
+    before = _LINE_COMMENT.sub("", text[max(0, first - 500) : first]).rstrip()
+    after = _LINE_COMMENT.sub("", text[last : last + 500]).lstrip()
+    if (before[-1:] in (";", "{", "}", ":") or before.endswith("*/")) and _BEGINS.match(after):
+        return _blank_group(match)
+    return match[0]
+
+
 def _replace_braces(match: re.Match[str]) -> str:
     """`= {a, b}` as `= (a, b)`, and `= {}` as `= 0 `."""
     inner = match["inner"]
@@ -223,6 +233,15 @@ _STATEMENT_MACRO = re.compile(
     r"(?![ \t]*[{;.,=#?:&|+<*)\]-])(?!(?P=blanks)[ \t]+\S)",
     re.MULTILINE,
 )
+# `PCL_ADD_POINT4D` in a class, without a semicolon.
+_LONE_MACRO = re.compile(r"^[ \t]*(?P<gone>[A-Z][A-Z0-9_]{4,})[ \t]*(?=//|$)", re.MULTILINE)
+# `REGISTER_POINT(Point, (float, x, x)(float, y, y))`
+_SEQUENCE_MACRO = re.compile(
+    r"^[ \t]*(?P<gone>[A-Z][A-Z0-9_]{5,}\s*\([^();{}]*(?:\([^();{}]*\)\s*(?://[^\n]*\s*)?){2,}\))", re.MULTILINE
+)
+_LINE_COMMENT = re.compile(r"//[^\n]*")
+_BEGINS = re.compile(r"[A-Za-z_~}]")
+_NO_BREAK = re.compile(r"[^\n]")
 _FURTHER = (
     (("__has_include",), _HAS_INCLUDE, _word_group),
     (("(<", "(>", "(=", "(!"), _COMPARED, _word_group),
@@ -238,6 +257,8 @@ _FURTHER = (
     (("class ", "struct "), _CLASS_MACRO, _blank_group),
     (("_DECL", "_VISIBILITY", "_IMPORT", "_HIDDEN"), _RARE_VISIBILITY, _blank_unless_directive),
     (_BARE, _BARE_WORD, _blank_unless_directive),
+    (("_",), _LONE_MACRO, _blank_lone),
+    (("_",), _SEQUENCE_MACRO, lambda match: _NO_BREAK.sub(" ", match[0])),
     (("PRI",), _FORMATS, make_blanks),
     (("slots", "Q_SLOTS"), _SLOTS, _blank_group),
     (("signals", "Q_SIGNALS"), _SIGNALS, _make_public),

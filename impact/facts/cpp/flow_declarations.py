@@ -90,7 +90,8 @@ class Declarations(FunctionReader):
                 name, marks = self.split_declarator(child)
                 if name is None:
                     continue
-                self.assign(name, FlowExpr("make", kind_ + marks), guard, kind_ + marks)
+                empty = FlowExpr("text") if kind_.endswith("stringstream") else FlowExpr("make", kind_ + marks)
+                self.assign(name, empty, guard, kind_ + marks)
             elif number in DECLARED_TYPES:
                 self.add_local_type(child)
         return value
@@ -193,6 +194,13 @@ class Declarations(FunctionReader):
             if name in self.known:
                 self.touch(name, PASS)
             return FlowExpr("name", name)
+        if len(children) == 2 and children[1].kind_id == KIND.abstract_array_declarator:
+            inner = get_items(children[1])
+            if len(inner) != 1 or children[0].kind_id not in (KIND.type_identifier, KIND.qualified_identifier):
+                return None
+            if name in self.known:
+                self.touch(f"{name}.[]", PASS)
+            return FlowExpr("index", "", (FlowExpr("name", name), self.follow(inner[0], guard)))
         if len(children) == 2 and children[1].kind_id == KIND.abstract_function_declarator:
             listed = next((child for child in children[1].children if child.kind_id == KIND.parameter_list), None)
             parts = self.follow_mistaken_parameters(get_items(listed) if listed is not None else [], guard)

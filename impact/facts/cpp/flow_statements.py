@@ -276,12 +276,13 @@ class CppStatements(Declarations):
         inner = self.guard("for", flatten(self.text[head:head_end]), line, guard)
         if name is not None:
             type_ = self.find_written_type(children)
-            for part in name.children or (name,):
-                if part.is_named:
-                    variable = self.text[part.start_byte : part.end_byte]
-                    self.known.add(variable)
-                    value = FlowExpr("index", "", (container, FlowExpr("other")))
-                    self.assignments.append(Assignment(variable, value, line, inner, type_ + marks))
+            each = FlowExpr("index", "", (container, FlowExpr("other")))
+            parts = [part for part in name.children if part.is_named]
+            for place, part in enumerate(parts or (name,)):
+                variable = self.text[part.start_byte : part.end_byte]
+                self.known.add(variable)
+                value = FlowExpr("index", "", (each, FlowExpr("number", str(place)))) if parts else each
+                self.assignments.append(Assignment(variable, value, line, inner, type_ + marks))
         self.visit_statement(body, inner)
         return STAYS
 

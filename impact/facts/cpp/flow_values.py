@@ -466,7 +466,8 @@ class FunctionReader:
         operands.reverse()
         signs.reverse()
         lefts.reverse()
-        joined = signs[0] in JOINING and self.nesting <= DEEPEST and all(sign == signs[0] for sign in signs)
+        stream = self.find_stream(operands[0]) if signs[0] == "<<" and all(sign == "<<" for sign in signs) else ""
+        joined = (signs[0] in JOINING or bool(stream)) and self.nesting <= DEEPEST and all(sign == signs[0] for sign in signs)
         parts: list[FlowExpr] = []
         outer = guard
         pending: list[Node] = []
@@ -496,9 +497,20 @@ class FunctionReader:
             if joined:
                 parts.append(read)
         self.nesting -= 1
+        if stream and joined:
+            added = FlowExpr("join", "", tuple(parts[1:]))
+            self.assignments.append(Assignment(stream, added, self.find_line(node), outer, "", "+="))
+            return FlowExpr("name", stream)
         if joined:
             return FlowExpr("join", signs[0], tuple(parts))
         return NOTHING if target is None else self.make_other(node)
+
+    def find_stream(self, node: Node) -> str:
+        """The local variable that a node names, where it is a stream of text; empty for all else."""
+        name = self.text[node.start_byte : node.end_byte]
+        if node.kind_id != KIND.identifier or name not in self.known:
+            return ""
+        return name if any(e.target == name and e.type.endswith("stringstream") for e in self.assignments) else ""
 
     def is_beside_literal(self, operands: list[Node], index: int) -> bool:
         other = operands[index - 1] if index else operands[1] if len(operands) > 1 else operands[0]

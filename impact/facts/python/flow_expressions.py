@@ -8,11 +8,20 @@ Assignment tells what goes on from there; what is kept elsewhere, returned or li
 """
 
 import ast
+from collections.abc import Sequence
 
 from ....edges.dispatch import collect_node_methods
 from ..flow import Access, Assignment, DataMember, FlowCall, FlowExpr, FlowParameter, Guard
 from .flow_body import Body, ClassBody
-from .text import SourceText, drop_surrogates, format_pieces, iterate_children, list_parameters, split_percent_format
+from .text import (
+    FormatPiece,
+    SourceText,
+    drop_surrogates,
+    format_pieces,
+    iterate_children,
+    list_parameters,
+    split_percent_format,
+)
 
 # Tables of numbers are no part of any flow.
 LONGEST_LIST = 500
@@ -517,22 +526,21 @@ class Expressions(SourceText):
         return self.put_together(node, pieces, values)
 
     def put_together(
-        self, node, pieces: list[str | int | tuple[str]] | None, values: dict[int | str, FlowExpr]
-    ) -> FlowExpr:
+        self, node, pieces: list[str | FormatPiece] | None, values: dict[int | str, FlowExpr]
+    ) -> FlowExpr:  # fmt: skip
         """The join of literal pieces and values; other when a value is not told apart."""
         if pieces is None:
             return self.make_other(node)
         parts: list[FlowExpr] = []
         for piece in pieces:
-            if piece.__class__ is str:
-                parts.append(FlowExpr("text", drop_surrogates(piece)))  # type: ignore[arg-type]
-            elif piece.__class__ is int:
-                if piece not in values:
-                    return self.make_other(node)
-                parts.append(values[piece])  # type: ignore[index]
+            if isinstance(piece, str):
+                parts.append(FlowExpr("text", drop_surrogates(piece)))
+            elif piece.value in values:
+                parts.append(make_formatted(values[piece.value], piece.spec))
+            elif isinstance(piece.value, int):
+                return self.make_other(node)
             else:
-                key = piece[0]  # type: ignore[index]
-                parts.append(values[key] if key in values else FlowExpr("other", drop_surrogates(key)[:LONGEST_OTHER]))
+                parts.append(FlowExpr("other", drop_surrogates(piece.value)[:LONGEST_OTHER]))
         if len(parts) == 1 and parts[0].kind == "text":
             return parts[0]
         return FlowExpr("join", "", tuple(parts))
@@ -566,9 +574,14 @@ class Expressions(SourceText):
             if piece.__class__ is ast.Constant:
                 parts.append(self.make_constant(piece))  # type: ignore[arg-type]
             elif piece.__class__ is ast.FormattedValue:
-                parts.append(self.follow(piece.value, "read"))  # type: ignore[attr-defined]
-                if piece.format_spec is not None:  # type: ignore[attr-defined]
-                    self.visit(piece.format_spec)  # type: ignore[attr-defined]
+                value = self.follow(piece.value, "read")  # type: ignore[attr-defined]
+                written = piece.format_spec  # type: ignore[attr-defined]
+                spec = "" if piece.conversion in (-1, ord("s")) else f"!{chr(piece.conversion)}"  # type: ignore[attr-defined]
+                if written is not None:
+                    self.visit(written)
+                    whole = len(written.values) == 1 and written.values[0].__class__ is ast.Constant
+                    spec += drop_surrogates(written.values[0].value) if whole else "{}"
+                parts.append(make_formatted(value, "" if spec == "s" else spec))
             else:
                 self.visit(piece)
                 parts.append(ANY)
@@ -594,7 +607,10 @@ class Expressions(SourceText):
         last = callee.rpartition(".")[2].lstrip("_")
         if last[:1].isupper() and not last.isupper():
             return FlowExpr("make", callee, arguments)
-        return FlowExpr("call", callee, arguments)
+        literal = func.value if func.__class__ is ast.Attribute else None  # type: ignore[attr-defined]
+        # `"/".join(names)`
+        told = literal.__class__ is ast.Constant and literal.value.__class__ is str  # type: ignore[union-attr]
+        return FlowExpr("call", callee, arguments, self.make_constant(literal) if told else None)  # type: ignore[arg-type]
 
     def call(self, node: ast.Call, target: str = "") -> tuple[str, tuple[FlowExpr, ...]]:
         """Records a call, with what it is given and what it is called on; gives its callee and arguments."""
@@ -647,6 +663,24 @@ class Expressions(SourceText):
                 FlowCall(callee, given, line, column, self.guard, "", "" if returned else target, returned)
             )
         return callee, given
+
+
+def make_formatted(value: FlowExpr, spec: str) -> FlowExpr:
+    """A value as a format writes it."""
+    return FlowExpr("call", "format", (value, FlowExpr("text", drop_surrogates(spec)))) if spec else value
+
+
+def make_join(pieces: Sequence[str | FormatPiece] | None, values: Sequence[FlowExpr]) -> FlowExpr | None:
+    """What a format puts together of values, None where one of them is not told apart."""
+    parts: list[FlowExpr] = []
+    for piece in pieces or ():
+        if isinstance(piece, str):
+            parts.append(FlowExpr("text", piece))
+        elif isinstance(piece.value, int) and piece.value < len(values):
+            parts.append(make_formatted(values[piece.value], piece.spec))
+        else:
+            return None
+    return FlowExpr("join", "", tuple(parts)) if pieces is not None else None
 
 
 def find_made_class(value: FlowExpr) -> str:

@@ -5,7 +5,7 @@ import operator
 import re
 import string
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 # A comment, or a string in which a `#` is none.
 _COMMENT = re.compile(r"(\"\"\"[\s\S]*?\"\"\"|'''[\s\S]*?'''|\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\\\n]|\\.)*')|#[^\n]*|\\\n")
@@ -199,10 +199,17 @@ def drop_surrogates(text: str) -> str:
     return text if text.isascii() else text.encode("utf-8", "replace").decode("utf-8")
 
 
-def split_percent_format(text: str) -> list[str | int | tuple[str]] | None:
-    """What `text % values` is made of: literal text, places in a tuple of values, or (key,) of a mapping; None for what
-    is no format or takes its widths from values."""
-    pieces: list[str | int | tuple[str]] = []
+class FormatPiece(NamedTuple):
+    """A value in a format. value: its place, or its name. spec: how it is written, empty where as str() does."""
+
+    value: int | str
+    spec: str = ""
+
+
+def split_percent_format(text: str) -> list[str | FormatPiece] | None:
+    """What `text % values` is made of: literal text, and values of a tuple, or of a mapping; None for what is no format
+    or takes its widths from values."""
+    pieces: list[str | FormatPiece] = []
     literal, at, number = "", 0, 0
     for match in _PERCENT.finditer(text):
         before, at = text[at : match.start()], match.end()
@@ -213,30 +220,34 @@ def split_percent_format(text: str) -> list[str | int | tuple[str]] | None:
             literal += "%"
             continue
         pieces += [literal] if literal else []
-        pieces.append(number if match["key"] is None else (match["key"],))
+        written = match[0].removeprefix("%")
+        written = written if match["key"] is None else written.removeprefix(f"({match['key']})")
+        spec = "" if written in ("s", "d", "i") else written
+        pieces.append(FormatPiece(number if match["key"] is None else match["key"], spec))
         literal, number = "", number + (match["key"] is None)
     literal += text[at:]
     return None if "%" in text[at:] else [*pieces, *([literal] if literal else [])]
 
 
-def format_pieces(text: str) -> list[str | int | tuple[str]] | None:
-    """What `text.format(...)` is made of: literal text, places of positional arguments, or (name,) of keywords, members
-    and elements included; None for what is no format."""
-    pieces: list[str | int | tuple[str]] = []
+def format_pieces(text: str) -> list[str | FormatPiece] | None:
+    """What `text.format(...)` is made of: literal text, positional arguments, and keywords, members and elements
+    included; None for what is no format."""
+    pieces: list[str | FormatPiece] = []
     number = 0
     try:
-        for literal, field, spec, _ in string.Formatter().parse(text):
+        for literal, field, spec, conversion in string.Formatter().parse(text):
             if literal:
                 pieces.append(literal)
             if field is None:
                 continue
             if spec and "{" in spec:
                 return None
+            written = (f"!{conversion}" if conversion not in (None, "s") else "") + ("" if spec == "s" else spec or "")
             if not field:
-                pieces.append(number)
+                pieces.append(FormatPiece(number, written))
                 number += 1
             else:
-                pieces.append(int(field) if field.isdecimal() else (field,))
+                pieces.append(FormatPiece(int(field) if field.isdecimal() else field, written))
     except ValueError:
         return None
     return pieces
@@ -256,5 +267,4 @@ def fill_format(text: str, values: Mapping[int | str, Any]) -> list[Any]:
     pieces = format_pieces(text)
     if pieces is None or any(spec for _, _, spec, _ in string.Formatter().parse(text)):
         return [None]
-    return [piece if isinstance(piece, str) else values.get(piece[0] if isinstance(piece, tuple) else piece)
-            for piece in pieces]  # fmt: skip
+    return [piece if isinstance(piece, str) else values.get(piece.value) for piece in pieces]

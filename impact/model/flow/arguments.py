@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property
 
 from ....edges.groups import group_pairs
+from ....edges.memory import cache_method
 from ...facts.flow import FlowCall, FlowExpr, Guard
 from .code import FlowCode, Fn, get_outer, get_tail, is_number
 
@@ -98,6 +99,12 @@ class CommandLine:
         wanted = self._find_flags(fn, guard)
         return wanted is not None and wanted.isdisjoint(arguments)
 
+    @cache_method
+    def is_asked(self, fn: Fn, guard: int) -> bool:
+        """Whether a guard of a function, or one around it, asks for arguments: how many there are, or for an option."""
+        parts = (part for one in list_guards(fn, guard) for part in one.text.split("&&"))
+        return any(_COMPARED.match(part.strip()) for part in parts) or self._find_flags(fn, guard) is not None
+
     def decide_number(self, guard: Guard, arguments: Sequence[str]) -> bool | None:
         """Whether a guard that asks how many arguments there are holds; None for those that ask something else."""
         holds = _holds(guard.text, len(arguments) + 1) if guard.kind in ("if", "unless") else None
@@ -147,6 +154,7 @@ class CommandLine:
             if found is not None:
                 yield found
 
+    @cache_method
     def is_parsed(self, path: str, fn: Fn) -> bool:
         """Whether a path is an argument that argparse reads."""
         return any(self._list_parsing(path, fn))

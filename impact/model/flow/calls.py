@@ -13,6 +13,7 @@ from ....edges.memory import cache_method
 from ...facts.cpp.names import split_at_commas
 from ...facts.flow import Assignment, FlowCall, FlowExpr
 from .code import FlowCode, Fn, Variable, get_outer, get_tail
+from .elements import Elements
 from .frameworks import FrameworkRow, Frameworks, Spot
 from .types import Cls, FlowType, is_pointer, parse_flow_type, split_name
 
@@ -63,20 +64,33 @@ class Calls:
         return found
 
     def _list_declared(self, fn: Fn, call: FlowCall) -> Iterator[FrameworkCall]:
-        """The parameters that one call of declare_parameters() declares, each as if it were declared alone."""
+        """The parameters that one call of declare_parameters() declares, each as if it were declared alone; one without
+        a known name for what is not written out."""
         given = {one.text: one.parts[0] for one in call.arguments if one.kind == "keyword" and one.parts}
         positional = [one for one in call.arguments if one.kind != "keyword"]
         namespace = positional[0] if positional else given.get("namespace", FlowExpr("text"))
         rows = positional[1] if len(positional) > 1 else given.get("parameters", FlowExpr("list"))
-        head = f"{namespace.text}." if namespace.kind == "text" and namespace.text else ""
-        for row in rows.parts if rows.kind == "list" else ():
+        head = (namespace, FlowExpr("text", "."))
+        if namespace.kind == "text":
+            head = (FlowExpr("text", f"{namespace.text}."),) if namespace.text else ()
+        known = self.table.calls.get("declare_parameter", ())
+        described = [each for each in known if each.language in ("", fn.source.facts.language)]
+        for row in self._list_declared_rows(rows, fn, call):
             name = row.parts[0] if row.kind == "list" and row.parts else row
-            if name.kind != "text":
-                continue
-            one = structs.replace(call, arguments=(FlowExpr("text", head + name.text), *row.parts[1:3]))
-            known = self.table.calls.get("declare_parameter", ())
-            described = [each for each in known if each.language in ("", fn.source.facts.language)]
+            whole = FlowExpr("join", "", (*head, name)) if head else name
+            if head and name.kind == namespace.kind == "text":
+                whole = FlowExpr("text", f"{head[0].text}{name.text}")
+            one = structs.replace(call, arguments=(whole, *row.parts[1:3]))
             yield from (FrameworkCall(fn, each, one) for each in described[:1])
+
+    def _list_declared_rows(self, rows: FlowExpr, fn: Fn, call: FlowCall) -> list[FlowExpr]:
+        """A list, with name and value, for each parameter that is declared at once."""
+        if rows.kind == "list":
+            return list(rows.parts)
+        if rows.kind == "other" and len(rows.parts) == 1:
+            return [rows.parts[0]]  # `[(name, 0) for name in names]`
+        found = Elements(self.code).list_walked(rows, fn, call.line)
+        return [one.value for one in found] if found else [FlowExpr("other", rows.text)]
 
     def select_uses(self, what: str) -> list[FrameworkCall]:
         """The uses that do something, as their rows call it; in order."""
@@ -124,6 +138,10 @@ class Calls:
                 continue
             if row.first and not self._fits_first(row.first, fn, call):
                 continue
+            if row.does == "parameter" and row.first == "node":
+                targets = self.code.list_targets(call.callee, fn)
+                if not all(map(self.is_name_handed_on, targets)):
+                    continue  # a helper of the code's own, which is followed
             if row.free or row.on:
                 if free is not None and (free in row.free and (free or not receiver)):
                     return FrameworkCall(fn, row, call)
@@ -145,6 +163,17 @@ class Calls:
                 continue  # a function of the code's own that has the same name
             return FrameworkCall(fn, row, call)
         return weak
+
+    def is_name_handed_on(self, fn: Fn) -> bool:
+        """Whether a function asks for a parameter by the name that its second argument is, and no other."""
+        name = fn.facts.parameters[1].name if len(fn.facts.parameters) > 1 else ""
+        asked = [
+            call.arguments[0].text
+            for call in fn.facts.calls
+            if call.arguments
+            and any(row.does == "parameter" for row in self.table.calls.get(get_tail(call.callee), ()))
+        ]
+        return bool(name) and bool(asked) and set(asked) == {name}
 
     def _resolve_receiver(self, fn: Fn, call: FlowCall) -> tuple[str, frozenset[str], str | None]:
         """The receiver as written, its kinds, and the scope of a function that has no receiver."""

@@ -20,6 +20,8 @@ from ...facts.flow import (
     FlowFunction,
     FlowParameter,
 )
+from ...facts.python.flow_expressions import make_join
+from ...facts.python.text import split_percent_format
 from .includes import SeenFiles
 from .modules import CodeFile, PythonModules
 from .types import UNKNOWN, Cls, FlowType, parse_flow_type, split_name
@@ -30,6 +32,10 @@ _Row = TypeVar("_Row", bound=tuple)
 _HEADERS = (".h", ".hpp", ".hh", ".hxx")
 # Bases that call no method of what derives from them by a name of their own.
 _CALL_NOTHING = frozenset(("Node", "object", "Object"))
+# Methods of strings that change them; algorithms that write where they are pointed to; those of Boost's string library.
+_CHANGE_STRING = frozenset(("insert", "erase", "replace", "push_back", "pop_back", "assign", "clear", "resize", "swap"))
+_CHANGE_RANGE = frozenset(("transform", "replace", "replace_if", "remove", "remove_if", "reverse", "rotate", "fill"))
+_CHANGE_IN_PLACE = ("replace_", "erase_", "trim", "to_lower", "to_upper")
 # Endings of C++ files that hold no declarations for others.
 SOURCES = (".cpp", ".cc", ".cxx", ".c++", ".c", ".cu")
 
@@ -168,7 +174,7 @@ def _split_path(path: str) -> tuple[str, ...]:
 
 
 def _list_assignments(fn: Fn) -> Iterable[Assignment]:
-    """The assignments of a function in order, with what in C++ is added to the end of a string."""
+    """The assignments of a function in order, with what in C++ is added to the end of a string, or changed in it."""
     if fn.source.facts.language != "cpp":
         return fn.facts.assignments
     added = [
@@ -176,7 +182,57 @@ def _list_assignments(fn: Fn) -> Iterable[Assignment]:
         for call in fn.facts.calls
         if call.callee.endswith(".append") and len(call.arguments) == 1
     ]
+    added += _list_changes(fn)
     return sorted([*fn.facts.assignments, *added], key=attrgetter("line")) if added else fn.facts.assignments
+
+
+def _list_changes(fn: Fn) -> Iterator[Assignment]:
+    """What changes strings in a function in C++ otherwise than by `=`, as assignments of what is not known."""
+    changed = [(path, row) for row in fn.facts.calls for path in _list_changed(row)]
+    elements = (row for row in fn.facts.assignments if row.target.endswith(".[]"))
+    changed += [(row.target.removesuffix(".[]"), row) for row in elements]
+    yield from _list_printed(fn)
+    if not changed:
+        return
+    strings = {row.name for row in fn.facts.parameters if _is_string_type(row.type)}
+    strings.update(row.target for row in fn.facts.assignments if _is_string_type(row.type))
+    for path, row in changed:
+        # No container but a string has `replace`.
+        if path in strings or (isinstance(row, FlowCall) and row.callee == f"{path}.replace"):
+            yield Assignment(path, FlowExpr("other", f"{path} changed in place"), row.line, row.guard)
+
+
+def _list_printed(fn: Fn) -> Iterator[Assignment]:
+    """What `snprintf` and `sprintf` write in a function, and what `str` begins a stream with."""
+    for call in fn.facts.calls:
+        name, arguments = get_tail(call.callee), call.arguments
+        if name in ("snprintf", "sprintf") and arguments[:1] and arguments[0].kind == "name":
+            place = 2 if name == "snprintf" else 1
+            pieces = split_percent_format(arguments[place].text) if arguments[place:] else None
+            known = pieces is not None and arguments[place].kind == "text"
+            joined = make_join(pieces if known else None, arguments[place + 1 :])
+            yield Assignment(arguments[0].text, joined or FlowExpr("other", name), call.line, call.guard)
+        elif name == "str" and len(arguments) == 1 and call.callee.endswith(".str"):
+            yield Assignment(call.callee.removesuffix(".str"), arguments[0], call.line, call.guard)
+
+
+def _list_changed(call: FlowCall) -> Iterator[str]:
+    """The paths of what a call in C++ changes where it is a string."""
+    path, _, method = call.callee.rpartition(".")
+    if path:
+        if method in _CHANGE_STRING:
+            yield path
+        return
+    name = get_tail(call.callee)
+    if name in _CHANGE_RANGE:
+        begins = (part.text for part in call.arguments if part.kind == "call" and part.text.endswith(".begin"))
+        yield from {text.removesuffix(".begin") for text in begins}
+    elif call.callee.startswith("boost::") and name.startswith(_CHANGE_IN_PLACE) and not name.endswith("_copy"):
+        yield from (part.text for part in call.arguments[:1] if part.kind == "name")
+
+
+def _is_string_type(written: str) -> bool:
+    return "<" not in written and parse_flow_type(written).name.removeprefix("std::") in ("string", "String")
 
 
 @lru_cache(maxsize=100_000)
@@ -639,9 +695,13 @@ class FlowCode:
         else:
             own = self._by_path.get(variable.owner, fn.source)
             for source in (own, *self._list_declaring_headers(variable, own)):
-                for constant in source.facts.constants:
-                    if constant.name == variable.name and constant.type:
-                        return constant.type, source, ""
+                rows = [constant for constant in source.facts.constants if constant.type]
+                named = [constant for constant in rows if constant.name == variable.name]
+                # In a namespace around, or one that is used: where all of that name are of one type.
+                same = [constant for constant in rows if get_tail(constant.name) == get_tail(variable.name)]
+                if named or len({constant.type for constant in same}) == 1:
+                    first = (named or same)[0]
+                    return first.type, source, get_outer(first.name)
         return "", fn.source, fn.scope
 
     def _list_declaring_headers(self, variable: Variable, source: CodeFile) -> list[CodeFile]:
@@ -679,14 +739,32 @@ class FlowCode:
                 yield member.value, holder
 
     def list_constants(self, variable: Variable, fn: Fn) -> list[tuple[DataMember, CodeFile]]:
-        """The constants that a global variable is. In C++ those of its name, by its last part, that the file of a
-        function has, else those of the first file of its package that has any."""
+        """The constants that a global variable is. In C++ those of its name that the file of a function has or sees,
+        also by headers of other packages; where it sees none, those of a file of its package. What is declared alone is
+        what any file defines under the same name. None where files that it sees disagree."""
         by_path, source = self._constants.get(get_tail(variable.name), {}), fn.source
         if source.facts.language == "python":
             return by_path.get(variable.owner, [])
+        if not by_path:
+            return []
+        seen = self._seen_files.list_seen(source.path)
         beside = (path for path, rows in by_path.items() if rows[0][1].package == source.package)
-        path = source.path if source.path in by_path else next(beside, "")
-        return by_path.get(path, [])
+        for paths in ([source.path], sorted(seen.intersection(by_path)), beside):
+            found = _select_named(variable.name, fn, [row for path in paths for row in by_path.get(path, ())])
+            if found:
+                break
+        else:
+            return []
+        if all(constant.value is None for constant, _ in found):
+            names = {constant.name for constant, _ in found}
+            found = self.list_definitions(names.pop()) if len(names) == 1 else []
+        files = {one.path for _, one in found}
+        return found if len(files) < 2 or len({constant.value for constant, _ in found}) == 1 else []
+
+    def list_definitions(self, name: str) -> list[tuple[DataMember, CodeFile]]:
+        """What C++ files define under a full name that another declares: a static member, a variable that is extern."""
+        rows = (row for rows in self._constants.get(get_tail(name), {}).values() for row in rows)
+        return [row for row in rows if row[0].name == name and row[0].value is not None]
 
     @cached_property
     def _by_path(self) -> dict[str, CodeFile]:
@@ -1161,3 +1239,19 @@ def _select_overloads(targets: list[Fn], call: FlowCall) -> list[Fn]:
         return targets
     given = len(call.arguments)
     return [one for one in targets if len(one.facts.parameters) == given] or targets
+
+
+def _select_named(
+    name: str, fn: Fn, rows: list[tuple[DataMember, CodeFile]]
+) -> list[tuple[DataMember, CodeFile]]:  # fmt: skip
+    """Of constants in C++ those that a name means in a function: by the scopes around it from the innermost on; else
+    those that end like it, where they are of one scope."""
+    scope = split_name(fn.scope)
+    for count in range(len(scope), -1, -1):
+        full = "::".join((*scope[:count], *split_name(name)))
+        found = [row for row in rows if row[0].name == full]
+        if found:
+            return found
+    ending = f"::{name.removeprefix('::')}"
+    found = [row for row in rows if f"::{row[0].name}".endswith(ending)]
+    return found if len({constant.name for constant, _ in found}) < 2 else []

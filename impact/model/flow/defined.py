@@ -13,10 +13,14 @@ _OF_ACTIONS = ("ActionGoal", "ActionResult", "ActionFeedback", "Action", "Goal",
 
 class DefinedInterfaces:
     """Asks whether an interface is there. own: package of the workspace to the names of its interfaces; ros: the
-    generation of released packages, which are not asked when it is 0."""
+    generation of released packages, which are not asked when it is 0. texts: the constants of the workspace's messages
+    that are strings, with their values, by `package/Name`."""
 
-    def __init__(self, own: Mapping[str, Collection[str]] | None = None, ros: int = 0):
-        self.own, self.ros = own or {}, ros
+    def __init__(
+        self, own: Mapping[str, Collection[str]] | None = None, ros: int = 0,
+        texts: Mapping[str, Mapping[str, str]] | None = None,
+    ):  # fmt: skip
+        self.own, self.ros, self.texts = own or {}, ros, texts or {}
 
     def has(self, interface: str) -> bool | None:
         """Whether `package/Name` is defined; None for a package that is not known."""

@@ -156,6 +156,7 @@ class Sites:
         self.code, self.calls, self.values, self.defined = code, calls, values, defined
         self.templates = Templates(code)
         values.find_prefix = self.find_prefix
+        values.find_message_text = self.find_message_text
 
     @cached_property
     def endpoints(self) -> list[Site]:
@@ -377,6 +378,18 @@ class Sites:
             if kind.arguments:
                 return self._resolve_interface(kind.arguments[0], fn)
         return ""
+
+    def find_message_text(self, path: str, fn: Fn) -> str | None:
+        """The value of a message's constant that is a string (`Topics::SCAN`, `Topics.SCAN`), None for all else."""
+        head, _, name = path.replace("::", ".").rpartition(".")
+        if not self.defined.texts or not head or head.startswith("this"):
+            return None
+        if fn.source.facts.language == "cpp":
+            type_ = head.replace(".", "::")
+            known = self._resolve_interface(type_, fn) or self._resolve_in_namespaces(type_, fn)
+        else:
+            known = self._find_imported_type(head, fn.source) or ""
+        return self.defined.texts.get(known, {}).get(name)
 
     def _resolve_interface(self, type_: str, fn: Fn) -> str:
         return find_interface(self.code.resolve_written(type_, fn.source, fn.scope).name)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
 from ...facts.extract import ExtractedFacts
 from ...facts.kinds import FLOW, find_kind
@@ -15,6 +15,7 @@ from ..workspace import Workspace
 
 _READ = frozenset(("cpp", "python", "script", "launch_xml", "launch_yaml", "params", "xml", "manifest", "cmake"))
 _NAME = re.compile(rb"<name>([^<>]{1,200})</name>")
+_NAMES_ROS = re.compile(rb"\b(?:rospy|rclpy)\b")
 _MANIFESTS = ("manifest", "manifest_variant")
 BUILD = frozenset(
     (*_MANIFESTS, "cmake", "setup_py", "setup_cfg", "plugin_xml", "xml", "msg", "srv", "action")
@@ -23,7 +24,8 @@ BUILD = frozenset(
 
 
 def make_code_selector(tree: Tree) -> Callable[[str], str | None]:
-    """The kind of flow facts wanted of a path of a tree; None for what is no code, tests, and what no package owns.
+    """The kind of flow facts wanted of a path of a tree; None for what is no code, tests, and what no package owns, but
+    for programs in Python that are run by hand.
 
     Which folders are packages is not known before files are read: a file is left out when it would be a test of
     whatever manifest lies above it.
@@ -51,6 +53,8 @@ def make_code_selector(tree: Tree) -> Callable[[str], str | None]:
         if kind is None:
             return None
         inside = list_starts(path.rpartition("/")[0])
+        if not inside and may_be_run_by_hand(path):
+            return kind if _NAMES_ROS.search(_read(tree, path)) else None
         own = ((start, names.get(path[: max(0, start - 1)], "")) for start in inside)
         return kind if any(is_code(path, start, name) for start, name in own) else None
 
@@ -66,11 +70,36 @@ def _list_doubtful(paths: Iterable[str], roots: Collection[str]) -> set[str]:
 
 def _read_name(tree: Tree, root: str) -> str:
     """What the manifest of a package calls it; empty where it has none such."""
-    try:
-        found = _NAME.search(tree.read(f"{root}/package.xml".lstrip("/")))
-    except (OSError, KeyError):
-        return ""
+    found = _NAME.search(_read(tree, f"{root}/package.xml".lstrip("/")))
     return found[1].decode("utf-8", "replace").strip() if found is not None else ""
+
+
+def _read(tree: Tree, path: str) -> bytes:
+    """A file of a tree, empty where it cannot be read."""
+    try:
+        return tree.read(path)
+    except (OSError, KeyError):
+        return b""
+
+
+def list_run_by_hand(kinds: Mapping[str, str], manifests: Mapping[str, str]) -> Iterator[str]:
+    """The programs in Python, and what they import, that lie outside of all packages. kinds: of flow facts, by path;
+    manifests: paths of a tree to their kinds."""
+    roots = {path.rpartition("/")[0] for path, kind in manifests.items() if kind in _MANIFESTS}
+    for path in kinds:
+        parts = path.split("/")[:-1]
+        above = ("/".join(parts[:count]) for count in range(len(parts) + 1))
+        if may_be_run_by_hand(path) and roots.isdisjoint(above):
+            yield path
+
+
+def may_be_run_by_hand(path: str) -> bool:
+    """Whether a file outside of all packages may be a program that is run by hand, or what one imports."""
+    *folders, name = path.split("/")
+    # Only of a package can more be said to be its tests.
+    kept = not any(folder[:1] == "." or folder in ("test", "tests") for folder in folders)
+    tested = name.startswith("test_") or name.endswith("_test.py")
+    return kept and not tested and name.endswith(".py") and name not in ("setup.py", "conf.py")
 
 
 def is_code(path: str, start: int, name: str = "") -> bool:

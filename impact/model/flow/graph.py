@@ -161,8 +161,8 @@ class Timer(msgspec.Struct, frozen=True):
 
 
 class ParameterUse(msgspec.Struct, frozen=True):
-    """A parameter that is declared or read. name: as the code gives it, in ROS 1 to the node handle; default: as
-    written, empty for none."""
+    """A parameter that is declared or read. name: as the code gives it, in ROS 1 to the node handle, with brackets for
+    what is not known of it (`<plugin_name>.speed`); default: as written, empty for none."""
 
     node: str
     name: str
@@ -176,6 +176,10 @@ LOST_INCLUDE = "included launch file"
 """What an include is, as Unresolved has it, that is not followed."""
 
 
+COPIED = "package"
+"""What a package is, as Unresolved has it, that is left out since another one has its name."""
+
+
 class Unresolved(msgspec.Struct, frozen=True):
     """A call that was not resolved. what: `publisher topic`, `subscriber callback`, `publish`, ...; reason: why."""
 
@@ -186,11 +190,20 @@ class Unresolved(msgspec.Struct, frozen=True):
     written: str = ""
 
 
+class PackageCoverage(msgspec.Struct, frozen=True):
+    """Calls that a search of the text of a package finds, and how many of them were understood."""
+
+    package: str
+    found: int
+    understood: int
+
+
 class Coverage(msgspec.Struct, frozen=True):
     """calls: of the frameworks; resolved: those of which all is known that they name (topic, type, callback,
     publisher). by_default: of the resolved, those whose name is a parameter's default. unread: files with spans that
     did not parse. wrappers: calls inside functions that stand for the framework's own; their callers are counted.
-    uncompiled: sources that are left out, since no target compiles them."""
+    uncompiled: sources that are left out, since no target compiles them. by_text: what a search of the text finds of
+    calls, by package; missed: those of them that were not understood. Both are of the whole code."""
 
     calls: int
     resolved: int
@@ -200,6 +213,8 @@ class Coverage(msgspec.Struct, frozen=True):
     unresolved: tuple[Unresolved, ...] = ()
     wrappers: tuple[Unresolved, ...] = ()
     uncompiled: tuple[str, ...] = ()
+    by_text: tuple[PackageCoverage, ...] = ()
+    missed: tuple[Unresolved, ...] = ()
 
 
 class Graph(msgspec.Struct, frozen=True):

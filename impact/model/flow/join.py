@@ -46,7 +46,7 @@ from .objects import NodeObjects, make_key
 from .qos import apply_overrides, find_qos, list_overridable
 from .started import Instance, make_instance
 from .types import FlowType, parse_flow_type
-from .values import ASKING, FlowValue, FlowValues, spell_condition
+from .values import ASKING, FlowValue, FlowValues, Work, spell_condition
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _OVERRIDES = re.compile(r"qos_overrides\.").match
@@ -132,15 +132,20 @@ class Join:
         self._asked: dict[int, list[FlowValue]] = {}
         # Of the last launch, which is asked for more than once.
         self._started: tuple[Launched, tuple[list[Running], list[Unresolved]]] | None = None
-        # By the functions that run and the arguments given: the settings that it rests on, and what it is under these.
-        # With who runs it, so that nothing else comes by the same id().
-        self._sites_of: dict[tuple, list[tuple[Running, dict[str, FlowValue | None], Site]]] = {}
+        # By the use: who runs it, whether another may share it who runs other functions, on what it rests, and what it
+        # is then. Who runs it keeps the ids in the key from being reused.
+        self._sites_of: dict[tuple, list[tuple[Running, bool, Work, Site]]] = {}
         # Of a function it is the same in all nodes that run the same of what leads to it.
         self._ways: dict[tuple[Fn, frozenset[Fn]], list[CallWay]] = {}
 
     def list_running(self) -> list[Running]:
         """All programs that talk, with their nodes, sorted."""
         return list(self._running)
+
+    @cached_property
+    def reached(self) -> frozenset[Fn]:
+        """The functions that a program is seen to reach."""
+        return frozenset(fn for one in self._running for fn in one.functions)
 
     @cached_property
     def _running(self) -> list[Running]:
@@ -444,9 +449,10 @@ class Join:
         if use is not None and full:
             full = self.objects.join_namespace(use, full.lstrip("/"), running)
         language = "python" if program.kind == "script" else "cpp"
+        id = f"{program.package}/{program.executable or program.plugin}".lstrip("/")
         node = Node(
-            f"{program.package}/{program.executable or program.plugin}", full, program.package, program.kind,
-            program.executable, program.plugin, language, program.path, program.line,
+            id, full, program.package, program.kind, program.executable, program.plugin, language, program.path,
+            program.line,
         )  # fmt: skip
         return node, use
 
@@ -587,15 +593,17 @@ class Join:
                 continue
             if owners.launched:
                 site = self._adapt_site(site, those[0])
+            coming = [owner for owner in those if not self._is_left_out(site.use, owner)]
+            adapted = [(owner, self._adapt_site(site, owner)) for owner in coming]
             if not site.implied:
-                lacking = self._find_missing(site)
+                # Of nodes that run the same code, one may have a name that is not known.
+                every = ((those[0], site), *adapted)
+                found = (self._find_missing(one) or self._find_refused(one, owner) for owner, one in every)
+                lacking = next(filter(None, found), None)
                 lost = Unresolved(*lacking, *_get_place(site.use), site.written) if lacking else None
                 count.call(lost, (site,))
-            for owner in those:
-                if self._is_left_out(site.use, owner):
-                    continue
+            for owner, here in adapted:
                 owners.use(owner)
-                here = self._adapt_site(site, owner)
                 for value in here.names:
                     for type_ in _select_types(here, owner):
                         yield self._make_endpoint(here, value, type_, owner)
@@ -627,6 +635,7 @@ class Join:
             for owner in owners.list_owners(timer.use):
                 if self._is_left_out(timer.use, owner):
                     continue
+                owners.use(owner)
                 node = _get_node(owner)
                 yield Timer(
                     node.id if node else "", timer.period, _make_callback(timer.callbacks), *_get_place(timer.use)
@@ -638,8 +647,9 @@ class Join:
             made = list(self._make_parameters(use, those))
             for owner in those if made else ():
                 owners.use(owner)
-            if those and not made:
-                reasons = [value.reason for value in self.list_parameter_names(use)]
+            values = self.list_parameter_names(use)
+            if those and not any(value.text for value in values):
+                reasons = [value.reason for value in values]
                 reason = reasons[0] if reasons else "no name is given"
                 written = unparse(self.calls.find_argument(use, use.row.topic))
                 count.unresolved.append(Unresolved("parameter name", reason, *_get_place(use), written))
@@ -647,7 +657,13 @@ class Join:
 
     @cached_property
     def _uses_of_parameters(self) -> list[FrameworkCall]:
-        return [use for use in self.calls.select_uses("parameter") if not self.sites.wraps(use.fn, "parameter")]
+        uses = self.calls.select_uses("parameter")
+        return [use for use in uses if not self.sites.wraps(use.fn, "parameter") or not self._is_asked_by_callers(use)]
+
+    def _is_asked_by_callers(self, use: FrameworkCall) -> bool:
+        """Whether what a function called like the framework's reads is what its callers name: for one without a class,
+        where it hands on the name it is given beside a node handle."""
+        return bool(use.fn.facts.owner) or self.calls.is_name_handed_on(use.fn)
 
     def find_library(self, fn: Fn) -> Node | None:
         """The library that a function belongs to, as a node; None outside of packages."""
@@ -671,28 +687,41 @@ class Join:
             return f"{site.role} callback", site.reason
         return None
 
+    def _find_refused(self, site: Site, owner: Owner) -> tuple[str, str] | None:
+        """What of a site is not known since ROS refuses its name."""
+        found = [self.resolve_name(site, value, owner) for value in site.names]
+        return next(((f"{site.role} name", reason) for name, _, reason in found if not name), None)
+
     def _adapt_site(self, site: Site, owner: Owner) -> Site:
         """A site as it is for whoever runs it: with the parameters and the arguments that a launch gives."""
         if not isinstance(owner, Running) or site.implied or (owner.values is self.values and self._is_written(site)):
             return site
-        arguments, made = owner.values.arguments, id(owner.values.made)
-        known = self._sites_of.setdefault((id(site.use), id(owner.functions), arguments, made), [])
-        for _, rests_on, found in known:
-            if all(owner.values.find_setting(name) == value for name, value in rests_on.items()):
+        values = owner.values.run(owner.functions)
+        known = self._sites_of.setdefault((id(site.use), bool(values.node)), [])
+        for one, is_shared, rests, found in known:
+            if (is_shared or one.functions is owner.functions) and values.is_same(rests):
                 return found
-        self.values.asked.clear()
         # What code that the node does not run passes to its functions is none of its names.
-        names = self.sites.list_names(site.use, site.prefix, owner.values.run(owner.functions))
-        if all(name.text is None for name in names):
+        names, rests = values.record(lambda: self.sites.list_names(site.use, site.prefix, values))
+        beside: list[Work] = []
+        if all(name.text is None for name in names) and any(name.unpassed for name in names):
             # It comes from code that the node does not run, as far as is known.
-            elsewhere = self.sites.list_names(site.use, site.prefix, owner.values)
+            elsewhere, work = owner.values.record(
+                lambda: self.sites.list_names(site.use, site.prefix, owner.values)
+            )
+            beside.append(work)
             names = tuple(
                 name if name.text is None else name._replace(only_if=_join_conditions(name.only_if, _PASSED))
                 for name in elsewhere
             )
-        type_ = site.type or self.sites.find_type(site.use, owner.values)
+        type_ = site.type
+        if not type_:
+            type_, work = owner.values.record(lambda: self.sites.find_type(site.use, owner.values))
+            beside.append(work)
+        for work in beside:
+            rests.note_given(work)
         found = site._replace(names=names, type=type_)
-        known.append((owner, dict(self.values.asked), found))
+        known.append((owner, not beside, rests, found))
         return found
 
     def _is_written(self, site: Site) -> bool:
@@ -823,10 +852,22 @@ class Join:
         default = unparse(self.calls.find_argument(use, use.row.default)) if use.row.default else ""
         kind = "declared" if use.row.declares else "read"
         nodes = {node.id if node else "": None for node in (_get_node(owner) for owner in owners)}
-        for value in values:
-            if value.text:
-                for node in nodes:
-                    yield ParameterUse(node, value.text, kind, *_get_place(use), default)
+        names = [value.text for value in values if value.text] or [self._spell_parameter_in_part(use)]
+        for name in filter(None, names):
+            for node in nodes:
+                yield ParameterUse(node, name, kind, *_get_place(use), default)
+
+    def _spell_parameter_in_part(self, use: FrameworkCall) -> str:
+        """The name of a parameter with brackets for what is not known of it; empty where none of it is known."""
+        written = self.calls.find_argument(use, use.row.topic)
+        if written is None or written.kind != "join" or written.text not in ("", "+"):
+            return ""
+        known = [self.values.evaluate(part, use.fn, use.call.line) for part in written.parts]
+        pieces = [found[0].text if len(found) == 1 else None for found in known]
+        if not any(piece and _WORD.search(piece) for piece in pieces):
+            return ""
+        rows = zip(written.parts, pieces, strict=True)
+        return "".join(_spell_open(part) if piece is None else piece for part, piece in rows)
 
 
 class _Owners:
@@ -841,14 +882,14 @@ class _Owners:
         )
 
     def list_owners(self, use: FrameworkCall, through: Sequence[FrameworkCall] = ()) -> list[Owner]:
-        """Who runs a use: nodes that reach it, else those that are built from its file, else its library, or none.
-        through: as for Join.runs()."""
+        """Who runs a use: nodes that reach it; where no program is seen to, those that are built from its file, else
+        its library, or none. through: as for Join.runs()."""
         found = self._by_function.get(use.fn, [])
-        if self.launched or found:
+        if found or (self.launched and use.fn in self.join.reached):
             return [one for one in found if self.join.runs(one, use, through)]
         here = (one for one in self.running if use.fn.source.path in one.program.files)
         built = [one for one in here if self.join.runs(one, use, through)]
-        if built:
+        if built or self.launched:
             return [*built]
         node = self.join.find_library(use.fn)
         return [self._libraries.setdefault(node.id, node) if node is not None else None]

@@ -22,6 +22,7 @@ from .join import Join, Running
 from .launches import follow_launch_files, list_launch_files
 from .names import normalise
 from .started import InWorkspace, follow_workspace_launch, make_instance
+from .system import ChosenLaunch, join_launched
 from .workspace import get_flow
 
 _SETTINGS = frozenset(("launch_xml", "launch_yaml", "params", "xacro"))
@@ -187,6 +188,10 @@ class _Side:
             self.launches[path] = follow_workspace_launch(self.workspace, path, {})
         return self.launches.get(path)
 
+    def follow_all(self, chosen: Sequence[ChosenLaunch]) -> Launched:
+        """What launch files start together."""
+        return join_launched([follow_workspace_launch(self.workspace, one.path, one.arguments) for one in chosen])
+
     def list_files(self, launched: Launched) -> Iterator[str]:
         """All files that decide what a launch starts."""
         for place in (*launched.files, *launched.parameter_files):
@@ -323,6 +328,10 @@ class _Comparison:
         used: set[str] = set()
         pairs = list(self._pair_launches())
         found = [one for pair in pairs if (one := self._compare_launch(*pair, self.changed, used)) is not None]
+        systems = [*self._compare_systems(used)]
+        # What starts together is told of once, with all that it meets.
+        whole = {path for paths, _ in systems for path in paths}
+        found = [*(one for _, one in systems), *(one for one in found if one.path not in whole)]
         covered = {path for one in found for node in one.nodes for path in node.list_files()}
         left = set(filter(self._differs, self.changed - covered - self._find_moved()))
         if left:
@@ -369,12 +378,31 @@ class _Comparison:
         for path in sorted(self.before.launches.keys() - self.now.launches.keys() - set(moved.values())):
             yield path if path in now else "", path
 
+    def _compare_systems(self, used: set[str]) -> Iterator[tuple[list[str], LaunchChange]]:
+        """The launch files of each system that starts something otherwise, and what this is. used: as below."""
+        for name, chosen in get_flow(self.now.workspace).systems.items():
+            had = get_flow(self.before.workspace).systems.get(name)
+            if had is not None:
+                paths = [one.path for one in chosen]
+                one = self._compare_started(
+                    (paths[0], had[0].path), (self.now.follow_all(chosen), self.before.follow_all(had)), self.changed, used
+                )
+                if one is not None:
+                    yield paths, one
+
     def _compare_launch(
         self, path: str, old_path: str, changed: set[str], used: set[str], undecided: bool = False
     ) -> LaunchChange | None:  # fmt: skip
         """What a launch file starts otherwise; None where it uses none of the files that changed, which are added to
         those used, or starts what it did. path, old_path: now and at the base."""
-        now, before = self.now.follow(path, undecided), self.before.follow(old_path, undecided)
+        both = self.now.follow(path, undecided), self.before.follow(old_path, undecided)
+        return self._compare_started((path, old_path), both, changed, used)
+
+    def _compare_started(
+        self, paths: tuple[str, str], both: tuple[Launched | None, Launched | None], changed: set[str], used: set[str]
+    ) -> LaunchChange | None:  # fmt: skip
+        """The same of what is started. paths: of the first launch file; both: now and at the base."""
+        (path, old_path), (now, before) = paths, both
         files = {*self.now.list_files(now)} if now is not None else set()
         files |= {*self.before.list_files(before)} if before is not None else set()
         here = files & changed

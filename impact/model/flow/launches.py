@@ -89,7 +89,8 @@ class LaunchedNode(msgspec.Struct, frozen=True):
     uses, before remapping; parameters: those it declares or reads, in ROS 1 by their full names, or as `*/name` where
     the code does not tell the namespace. hidden, hidden_parameters: why these are not all known, and so left empty.
     uncertain: why it may have another name, or may not be started at all. refused: values that it is given and that its
-    parameters do not take.
+    parameters do not take. values: those that it is given, by the names of its parameters; without a type where they
+    are not known.
     """
 
     node: str
@@ -103,6 +104,7 @@ class LaunchedNode(msgspec.Struct, frozen=True):
     hidden_parameters: str
     uncertain: tuple[str, ...]
     refused: tuple[RefusedValue, ...] = ()
+    values: tuple[GivenValue, ...] = ()
 
 
 class Launch(msgspec.Struct, frozen=True):
@@ -282,7 +284,28 @@ def _start_node(
         one.node.id, program, one.program.package, tuple(sorted(names)), tuple(sorted(asked)), renamed, given,
         reasons.names, reasons.parameters, instance.uncertain,
         tuple(_list_refused(join, launch, sources, one, instance, declared)),
+        tuple(_list_values(launch, sources, instance)),
     )  # fmt: skip
+
+
+def _list_values(launch: Launched, sources: InWorkspace, instance: Instance) -> Iterator[GivenValue]:
+    """The values that a node is given."""
+    if instance.started.generation != 1:
+        yield from _collect_values(sources, instance.started, instance.name).values()
+        return
+    own = launch.collect_parameters(instance.started, instance.name)
+    for name in dict.fromkeys(name.rpartition("/")[2] for name in launch.server):
+        if name not in own:  # of a namespace around it, or of another node: which of both is not told here
+            yield GivenValue(name, "", 0, "", "")
+    for name, setting in own.items():
+        at = setting.source or setting.at
+        place = sources.find_workspace_path(at.package, at.path)
+        text = setting.text.value
+        if text is None or not place or setting.conditions:
+            yield GivenValue(name, place, at.line, "", "")
+            continue
+        value = text if setting.type in ("str", "string") else parse_ros1_value(text)
+        yield make_given_value(name, place, at.line, value)
 
 
 class _Declared:

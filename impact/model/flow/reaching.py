@@ -15,8 +15,8 @@ LOOPS = frozenset(("for", "while", "do"))
 class FlowValue(NamedTuple):
     """text: what it is worth, None when it is not known; reason says why then, and how is `given` where a launch file
     may say it. beside: it is not known, and holds under some condition in place of values that are. only_if: the
-    condition under which it is worth that, where it is not known whether that holds. uncalled: it is given by whoever
-    calls a function, and nothing does."""
+    condition under which it is worth that, where it is not known whether that holds. unpassed: it is given by whoever
+    calls a function, and nothing that runs does; uncalled: nothing at all does."""
 
     text: str | None
     how: How = "literal"
@@ -24,6 +24,7 @@ class FlowValue(NamedTuple):
     beside: bool = False
     only_if: str = ""
     uncalled: bool = False
+    unpassed: bool = False
 
     def mark(self) -> FlowValue:
         """The same as one that may hold in place of others."""

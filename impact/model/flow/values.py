@@ -2,25 +2,30 @@
 
 from __future__ import annotations
 
+import posixpath
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import islice, product
 from operator import itemgetter
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from ....edges.groups import group_pairs
 from ...facts.flow import Assignment, FlowCall, FlowExpr, FlowParameter, Guard
-from ...facts.python.flow_expressions import LONGEST_OTHER
+from ...facts.python.flow_expressions import LONGEST_OTHER, make_join
+from ...facts.python.text import format_pieces
 from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
-from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail
+from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number
 from .conditions import ConditionReader, DecidedCondition, is_truth
+from .elements import Elements, ListElement
 from .graph import How
 from .names import is_open, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
 from .reaching import LOOPS, FlowValue, ReachingValues
 from .types import split_name
+
+_Row = TypeVar("_Row")
 
 NODE, NAMESPACE = "{node}", "{ns}"
 """Stand in a value for the name and the namespace of the node that evaluates it (ROS 2 writes them so in names)."""
@@ -39,7 +44,7 @@ _FEW_STEPS = 50
 _STEPS_A_CONDITION = 500
 _LONGEST = 10_000
 # Of the values of a variable under the same circumstances those that are kept.
-_MOST_KNOWN = 8
+_MOST_KNOWN = 24
 # Calls that give what they are called on, or their first argument, as a string.
 _SAME = frozenset(
     ("c_str", "str", "as_string", "string_value", "value", "get_parameter_value", "strip", "lstrip", "rstrip", "data",
@@ -48,12 +53,16 @@ _SAME = frozenset(
 _OF_FIRST = frozenset(("resolveName", "resolve_name", "remap_name", "resolve", "string", "str", "String", "move",
                        "forward", "ParameterValue", "expand_topic_or_service_name", "resolve_topic_name",
                        "resolve_service_name", "resolve_topic_or_service_name"))  # fmt: skip
+_STRING_METHODS = frozenset(
+    ("capitalize", "join", "lower", "lstrip", "removeprefix", "removesuffix", "replace", "rstrip", "strip", "upper")
+)
 # What is least certain of a text that is put together, first.
 _LEAST: tuple[How, ...] = ("default", "launch", "given", "literal")
 # Kinds of guards that ask something, and conditions that are a variable alone.
 ASKING = frozenset(("if", "unless", "case"))
 _FLAG = re.compile(r"(!|not )?\s*\(?((?:self\.|this->|this\.)?[A-Za-z_]\w*)\)?")
 _WORD = re.compile(r"[A-Za-z_]\w*")
+_OF_PAIRS = frozenset(("first", "second"))
 _PUT = frozenset(("push_back", "emplace_back", "append"))
 # Functions that give a topic's type, and its name beside it.
 _TELLS_TOPIC = frozenset(("get_topic_class", "get_topic_type"))
@@ -64,32 +73,106 @@ _NODE_NAMESPACE = frozenset(("get_namespace", "getNamespace"))
 _NOT_GIVEN = FlowValue(None, "given", "an argument of the command line that is not given")
 
 
-class _Work:
-    """What the values of a variable rest on while they are worked out. items: what was asked for whether it is being
-    evaluated; lines: functions with lines of which it was asked which guard there is; settings: those that were asked
-    for. is_alone: whether nothing else had a part in it that may be otherwise another time."""
+UNASKED: tuple[str, ...] = ("not asked for",)
+"""Stands for arguments of the command line that were not asked for."""
 
-    __slots__ = ("is_alone", "items", "lines", "settings")
 
-    def __init__(self):
+class Work:
+    """What something rests on while it is worked out. items: what was asked for whether it is being evaluated; lines:
+    functions with lines of which it was asked which guard there is; settings: those that were asked for; runs, idle:
+    functions that were asked for whether they run, and do or do not; is_limited: whether only some functions run; free:
+    functions that any call was taken of; ways: those of which the only call was; unmade: functions that nobody in
+    particular makes; makers: who makes the others; made: all of these; is_open: whether a launch gives anything. Where
+    nothing asked, made and what is true or false are None, and arguments is UNASKED. higher, lower: by how much the
+    number of things that are being evaluated could be larger or smaller without another answer of those that ask for
+    it. is_alone: whether nothing else had a part in it that may be otherwise another time. way: that of whoever works
+    it out."""
+
+    __slots__ = (
+        "arguments", "free", "higher", "idle", "is_alone", "is_limited", "is_open", "items", "lines", "lower", "made",
+        "makers", "runs", "settings", "unmade", "way", "ways",
+    )  # fmt: skip
+
+    def __init__(self, way: Mapping[Fn, FlowCall]):
+        self.way = way
         self.items: set[tuple] = set()
         self.lines: set[tuple[Fn, int]] = set()
         self.settings: dict[str, FlowValue | None] = {}
+        self.runs: set[Fn] = set()
+        self.idle: set[Fn] = set()
+        self.free: set[Fn] = set()
+        self.ways: dict[Fn, FlowCall] = {}
+        self.unmade: set[Fn] = set()
+        self.makers: dict[Fn, Sequence[Made]] = {}
+        self.made: Mapping[Fn, Sequence[Made]] | None = None
+        self.arguments: tuple[str, ...] | None = UNASKED
+        self.is_limited: bool | None = None
+        self.is_open: bool | None = None
+        self.higher = self.lower = _DEEPEST
         self.is_alone = True
+
+    def note(self, other: Work, further: int = 0) -> None:
+        """Notes that it rests on what something else rests on. further: how many more things are being evaluated than
+        when that was worked out."""
+        self.items |= other.items
+        self.lines |= other.lines
+        self.runs |= other.runs
+        self.idle |= other.idle
+        self.free |= other.free
+        for fn, call in other.ways.items():
+            self.note_way(fn, call)
+        self.unmade |= other.unmade
+        self.makers.update(other.makers)
+        if other.made is not None:
+            self.made = other.made
+        if other.is_limited is not None:
+            self.is_limited = other.is_limited
+        self.note_given(other)
+        if other.higher - further < self.higher:
+            self.higher = other.higher - further
+        if other.lower + further < self.lower:
+            self.lower = other.lower + further
+
+    def note_given(self, other: Work) -> None:
+        """Notes of what something else rests on what a launch gives."""
+        self.settings.update(other.settings)
+        if other.arguments is not UNASKED:
+            self.arguments = other.arguments
+        if other.is_open is not None:
+            self.is_open = other.is_open
+
+    def note_way(self, fn: Fn, call: FlowCall | None) -> None:
+        """Notes the only call of a function, other than one that was chosen on the way here."""
+        if call is None:
+            self.free.add(fn)
+        elif self.way.get(fn) is call:
+            self.ways[fn] = call
+
+    def note_maker(self, fn: Fn, made: Sequence[Made] | None) -> None:
+        """Notes who in particular makes a function's objects."""
+        if made is None:
+            self.unmade.add(fn)
+        else:
+            self.makers[fn] = made
+
+    def note_depth(self, most: int, depth: int) -> None:
+        """Notes that it was asked for whether more things than this are being evaluated. depth: how many are."""
+        if depth > most:
+            self.lower = min(self.lower, depth - most - 1)
+        else:
+            self.higher = min(self.higher, most - depth)
 
 
 class _Known(NamedTuple):
-    """Values of a variable that were worked out. items, lines, settings: as in _Work; within and asking: what of these
-    was being evaluated; steps: those that it took; kept: what keeps the ids in its key from being reused."""
+    """Values of a variable that were worked out. rests: on what; within and asking: what of its items and lines was
+    being evaluated, and depth: how much was; steps: those that it took."""
 
     values: list[FlowValue]
-    items: frozenset[tuple]
+    rests: Work
     within: frozenset[tuple]
-    lines: frozenset[tuple[Fn, int]]
     asking: tuple[tuple, ...]
-    settings: dict[str, FlowValue | None]
+    depth: int
     steps: int
-    kept: tuple
 
 
 class FlowValues:
@@ -115,18 +198,20 @@ class FlowValues:
         self.node, self.made = node, made or {}
         # The namespace of the node handle that a use is called on, and what is known of that, by the call.
         self.find_prefix: Callable[[FrameworkCall], str] = lambda use: ""
+        # The value of a message's constant by its path, where it is a string.
+        self.find_message_text: Callable[[str, Fn], str | None] = lambda path, fn: None
         self._prefixes: dict[int, str] = {}
         self._left = _MOST_STEPS
         self._budget = [_STEPS_IN_ALL + _STEPS_A_FUNCTION * len(self.code.functions)]
-        # Settings that were asked for, by name, with what they are.
-        self.asked: dict[str, FlowValue | None] = {}
-        # Decided guards, each with the settings that it rests on and what keeps the ids in its key from being reused.
-        self._decided: dict[tuple, list[tuple[dict[str, FlowValue | None], DecidedCondition, tuple]]] = {}
+        # Decided guards, each with what it rests on.
+        self._decided: dict[tuple, list[tuple[Work, DecidedCondition]]] = {}
+        # Places of functions that may be under a guard that asks for what a launch gives.
+        self._asking: dict[tuple[Fn, int], bool] = {}
         # The same where only some functions run, by their id().
         self._copies: dict[int, FlowValues] = {}
         # Values of variables, by all that does not show in what they rest on; and what is being worked out.
         self._known: dict[tuple, list[_Known]] = {}
-        self._works: list[_Work] = []
+        self._works: list[Work] = []
 
     def apply_launch(
         self, settings: Mapping[str, str], arguments: tuple[str, ...] | None = None, node: str = ""
@@ -158,9 +243,10 @@ class FlowValues:
         other = FlowValues(self.calls, *given)
         for name in ("filled", "declared", "command_line", "origins", "parameter_words"):
             other.__dict__[name] = getattr(self, name)
-        other._budget, other.asked, other._decided = self._budget, self.asked, self._decided
-        other._known, other._works = self._known, self._works
+        other._budget, other._decided = self._budget, self._decided
+        other._known, other._works, other._asking = self._known, self._works, self._asking
         other.find_prefix, other._prefixes = self.find_prefix, self._prefixes
+        other.find_message_text = self.find_message_text
         return other
 
     def evaluate(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
@@ -192,11 +278,15 @@ class FlowValues:
             yield FlowValue(None, "unresolved", "no value is given")
             return
         self._left -= 1
+        if self._works:
+            self._works[-1].note_depth(_DEEPEST, len(seen))
         if len(seen) > _DEEPEST or self._left < 0:
             yield FlowValue(None, "unresolved", "too many steps")
             return
         kind = value.kind
-        if kind in ("text", "number"):
+        if kind == "number" and value.text[:1] == "'" and len(value.text) == 3:
+            yield FlowValue(value.text[1])
+        elif kind in ("text", "number"):
             yield FlowValue(value.text)
         elif kind == "name":
             yield from self._evaluate_name(value.text, fn, line, seen)
@@ -242,8 +332,18 @@ class FlowValues:
 
     def _evaluate_join(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         pieces = [_take_first(self._evaluate(part, fn, line, seen)) for part in value.parts]
+        plain = value.text in ("+", "/", "%") and not any(map(_is_string, value.parts))
         for row in islice(product(*pieces), _MOST):
-            yield _join(row)
+            # Numbers are added; of what may be either, it is not known.
+            numbers = plain and all(one.text is not None and is_number(one.text) for one in row)
+            counted = numbers and value.text == "+" and any(part.kind == "number" for part in value.parts)
+            if counted:
+                joined = _join(row)
+                yield joined._replace(text=str(sum(int(one.text or "") for one in row)))
+            elif numbers:
+                yield FlowValue(None, "unresolved", "whether numbers are counted is not followed")
+            else:
+                yield _join(row)
 
     def _evaluate_choice(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         """What is chosen: one of two, where it is known which, else either."""
@@ -265,20 +365,27 @@ class FlowValues:
             yield fn.facts.guards[place], self._recall_decided(fn, place)
 
     def _recall_decided(self, fn: Fn, place: int) -> DecidedCondition:
-        """Whether a guard of a function holds; known already where the settings that this rests on are the same."""
-        # No way and no makers are the same in every copy; that no functions run is not that all do.
-        kept = (self.way or None, self.within, self.made or None)
-        known = self._decided.setdefault((fn, place, self.arguments, self.node, *map(id, kept)), [])
-        for rests_on, found, _ in known:
-            if all(self.find_setting(name) == value for name, value in rests_on.items()):
-                self.asked.update(rests_on)
+        """Whether a guard of a function holds; known already where all that this rests on is the same."""
+        known = self._decided.setdefault((fn, place, bool(self.node)), [])
+        for rests, found in known:
+            if self.is_same(rests):
+                if self._works:
+                    self._works[-1].note(rests)
                 return found
-        before = dict(self.asked)
-        self.asked.clear()
-        found = self._decide_guard(fn.facts.guards[place], fn, ())
-        known.append((dict(self.asked), found, kept))
-        self.asked.update(before)
+        found, rests = self.record(lambda: self._decide_guard(fn.facts.guards[place], fn, ()))
+        known.append((rests, found))
         return found
+
+    def record(self, work_out: Callable[[], _Row]) -> tuple[_Row, Work]:
+        """What a function gives, and on what that rests."""
+        work = Work(self.way)
+        self._works.append(work)
+        try:
+            return work_out(), work
+        finally:
+            self._works.pop()
+            if self._works:
+                self._works[-1].note(work)
 
     def _decide_guard(self, guard: Guard, fn: Fn, seen: tuple) -> DecidedCondition:
         # Who asks a variable for its value is not under the guard yet.
@@ -326,6 +433,7 @@ class FlowValues:
         container, index = value.parts[0], value.parts[-1]
         places = self.command_line.find_places(container, index, fn) if len(value.parts) == 2 else None
         if places is not None:
+            self._note_arguments()
             if self.arguments is None:
                 yield FlowValue(None, "given", "an argument of the command line")
             elif (following := self._list_following(index, fn, line)) is not None:
@@ -338,8 +446,55 @@ class FlowValues:
                     yield FlowValue(None, "given", "one of several arguments of the command line")
         elif container.kind == "call" and get_tail(container.text) in _TELLS_TOPIC and container.parts:
             yield from self._evaluate(container.parts[0], fn, line, seen)
+        elif len(value.parts) == 2:
+            yield from self._evaluate_chosen(container, index, fn, line, seen)
         else:
             yield from self._evaluate_elements(container, fn, line, seen)
+
+    @cached_property
+    def elements(self) -> Elements:
+        """What lists and dictionaries of the code hold."""
+        return Elements(self.code, self._runs, self.way, self.made)
+
+    def _evaluate_chosen(
+        self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
+    ) -> Iterator[FlowValue]:  # fmt: skip
+        """What stands at a place, at a key, or in each turn of a loop."""
+        if index.kind in ("number", "text"):
+            found = self.elements.select(container, index, fn, line)
+        elif index.kind == "other" and not index.text:
+            found = self.elements.list_walked(container, fn, line)
+            # A loop over a dictionary goes through its keys.
+            found = [one._replace(value=_get_key(one.value)) for one in found or ()]
+        else:
+            found = self._select_at_each(container, index, fn, line, seen)
+        if found:
+            for one in found:
+                yield from self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value)))
+        elif index.kind == "number":
+            one_of = list(self._evaluate_elements(container, fn, line, seen))
+            yield from one_of
+            if sum(one.text is not None for one in one_of) > 1:
+                reason = f"which element of `{container.text or container.kind}` it is"
+                yield FlowValue(None, "unresolved", reason, beside=True)
+        else:
+            yield from self._evaluate_elements(container, fn, line, seen)
+
+    def _select_at_each(
+        self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
+    ) -> list[ListElement]:  # fmt: skip
+        """What a dictionary has at each key that an expression may be worth; nothing where one of these is not known,
+        or it has no such key."""
+        if index.kind != "name" or self._is_in(("key", index.text), seen):
+            return []
+        keys = list(self._evaluate(index, fn, line, (*seen, ("key", index.text))))
+        found: list[ListElement] = []
+        for key in keys:
+            chosen = key.text is not None and self.elements.select(container, FlowExpr("text", key.text), fn, line)
+            if not chosen:
+                return []
+            found += chosen
+        return found
 
     def _list_following(self, index: FlowExpr, fn: Fn, line: int) -> list[str] | None:
         return self.command_line.list_following(index, fn, _find_guard(fn, line), self.arguments or ())
@@ -361,10 +516,11 @@ class FlowValues:
             return
         if value.kind == "name":
             variable = self.code.identify(value.text, fn)
-            for writer, each in self.code.list_writes(variable):
-                if each.value.kind == "list":
-                    yield from self._evaluate_elements(each.value, writer, each.line, (*seen, variable))
-                    return
+            lists = [row for row in self.code.list_writes(variable) if row[1].value.kind == "list"]
+            for writer, each in lists:
+                yield from self._evaluate_elements(each.value, writer, each.line, (*seen, variable))
+            if lists:
+                return
             puts = {f"{value.text}.{put}" for put in _PUT}
             pushed = [call for call in fn.facts.calls if call.callee in puts]
             if pushed and not self._is_in(variable, seen):
@@ -382,10 +538,19 @@ class FlowValues:
         if path.endswith("()"):
             yield from self._evaluate_inner(path.removesuffix("()"), fn, line, seen)
             return
+        known = self.elements.find_pair(path, fn, line) if parts[-1] in _OF_PAIRS and "." in path else None
+        known = known or (self.elements.list_counted(path, fn, line) if path in fn.locals else None)
+        if known:
+            for one in known:
+                yield from self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value)))
+            return
         variable = self.code.identify(path, fn)
         if self._is_in(variable, seen):
             return
-        for text, how in self.command_line.list_parsed_texts(path, fn, self.arguments) if "." in path else ():
+        is_parsed = "." in path and self.command_line.is_parsed(path, fn)
+        if is_parsed:
+            self._note_arguments()
+        for text, how in self.command_line.list_parsed_texts(path, fn, self.arguments) if is_parsed else ():
             unknown = FlowValue(None, "given", f"`{path}` is an argument of the command line")
             lacking = unknown if self.arguments is None else _NOT_GIVEN
             yield lacking if text is None else FlowValue(text, "given" if how == "given" else "default")
@@ -397,11 +562,29 @@ class FlowValues:
             yield from self._evaluate(last.value, fn, last.line, (*seen, variable))
             return
         found = list(self.evaluate_variable(variable, fn, (*seen, variable), self._find_origins(path, fn), at, line))
+        if not found:
+            found = list(self._evaluate_declared(path, fn, line, (*seen, variable)))
+        told = None if found else self.find_message_text(path, fn)
         if found:
             yield from found
+        elif told is not None:
+            yield FlowValue(told)
         else:
-            how = "given" if "." in path and self.command_line.is_parsed(path, fn) else "unresolved"
+            how = "given" if is_parsed else "unresolved"
             yield FlowValue(None, how, f"nothing tells what `{path}` is")
+
+    def _evaluate_declared(self, path: str, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
+        """What a path of Python is that names a member of a class, or a method that is read like a member."""
+        head, _, name = path.rpartition(".")
+        if fn.source.facts.language != "python" or not head:
+            return
+        owner = self.code.find_class(head, fn.source, fn.scope) if head != "this" else None
+        if owner is not None:
+            member = Variable("member", owner.key, name)
+            if not self._is_in(member, seen):
+                yield from self.evaluate_variable(member, fn, (*seen, member))
+        elif self.code.list_targets(path, fn):
+            yield from self._evaluate_inner(path, fn, line, seen)
 
     def _find_written_before(self, path: str, fn: Fn, line: int) -> Assignment | None:
         """The assignment to a member of another object that a line of a function surely comes after, where nothing
@@ -437,58 +620,58 @@ class FlowValues:
         of the objects that a member may be of, None for any. line: at which it is asked for, 0 for any. filled_before:
         the line at which it is asked for, also where assignments are not followed in turn: what a parameter was read
         into before has no more of what its object was made with."""
-        key = (variable, fn, origins, line, filled_before, len(seen), self._about)
-        for known in self._known.get(key, ()):
+        key = (variable, fn, origins, line, filled_before, bool(self.node))
+        rows = self._known.setdefault(key, [])
+        for known in rows:
             if self._holds_again(known, seen):
                 self._left -= known.steps
-                self.asked.update(known.settings)
                 if self._works:
-                    self._note(known.items, known.lines, known.settings)
+                    self._works[-1].note(known.rests, len(seen) - known.depth)
                 yield from known.values
                 return
-        work, before = _Work(), self._left
-        self._works.append(work)
-        try:
-            values = list(self._follow_variable(variable, fn, seen, origins, line, filled_before))
-        finally:
-            self._works.pop()
-            if self._works:
-                self._note(work.items, work.lines, work.settings)
-                self._works[-1].is_alone &= work.is_alone
+        before = self._left
+        values, work = self.record(
+            lambda: list(self._follow_variable(variable, fn, seen, origins, line, filled_before))
+        )
+        if self._works:
+            self._works[-1].is_alone &= work.is_alone
         if work.is_alone and self._left >= 0:
-            within, lines = frozenset(work.items.intersection(seen)), frozenset(work.lines)
-            known = _Known(
-                values, frozenset(work.items), within, lines, _list_asking(seen, lines), work.settings,
-                before - self._left, (self.way, self.within, self.made),
-            )  # fmt: skip
-            rows = self._known.setdefault(key, [])
-            rows.append(known)
+            within, asking = frozenset(work.items.intersection(seen)), _list_asking(seen, work.lines)
+            rows.append(_Known(values, work, within, asking, len(seen), before - self._left))
             del rows[:-_MOST_KNOWN]
         yield from values
 
-    @cached_property
-    def _about(self) -> tuple:
-        """Tells what is evaluated from the same under other circumstances, other than settings."""
-        # No way and no makers are the same in every copy; that no functions run is not that all do.
-        way = frozenset((fn, id(call)) for fn, call in self.way.items())
-        kept = id(self.within), id(self.made) if self.made else 0
-        return self.arguments, self.node, bool(self.settings), way, kept
-
     def _holds_again(self, known: _Known, seen: tuple) -> bool:
         """Whether values that were worked out are those of now. seen: what is being evaluated."""
+        rests, further = known.rests, len(seen) - known.depth
         return (
             self._left >= known.steps
-            and known.items.intersection(seen) == known.within
-            and _list_asking(seen, known.lines) == known.asking
-            and all(self.find_setting(name) == value for name, value in known.settings.items())
+            and -rests.lower <= further <= rests.higher
+            and rests.items.intersection(seen) == known.within
+            and _list_asking(seen, rests.lines) == known.asking
+            and self.is_same(rests)
         )
 
-    def _note(self, items: Iterable[tuple], lines: Iterable[tuple[Fn, int]], settings: Mapping) -> None:
-        """Notes on what else rests what is being worked out."""
-        work = self._works[-1]
-        work.items.update(items)
-        work.lines.update(lines)
-        work.settings.update(settings)
+    def is_same(self, rests: Work) -> bool:
+        """Whether what something rests on is here as it was there."""
+        within, way, made = self.within, self.way, self.made
+        return (
+            (rests.is_limited is None or rests.is_limited == (within is not None))
+            and (rests.is_open is None or rests.is_open == bool(self.settings or self.arguments))
+            and (not rests.idle if within is None else rests.runs.issubset(within) and rests.idle.isdisjoint(within))
+            and (not way or rests.free.isdisjoint(way))
+            and (not rests.ways or all(way.get(fn) is call for fn, call in rests.ways.items()))
+            and (not made or rests.unmade.isdisjoint(made))
+            and (not rests.makers or all(made.get(fn) == rows for fn, rows in rests.makers.items()))
+            and (rests.made is None or rests.made is made)
+            and (rests.arguments is UNASKED or rests.arguments == self.arguments)
+            and (not rests.settings or all(self.find_setting(name) == v for name, v in rests.settings.items()))
+        )
+
+    def _note_arguments(self) -> None:
+        """Notes that the arguments of the command line were asked for."""
+        if self._works:
+            self._works[-1].arguments = self.arguments
 
     def _note_others(self) -> None:
         """Notes that what is being worked out may be otherwise another time."""
@@ -527,7 +710,7 @@ class FlowValues:
         written = self.code.list_writes(variable)
         if origins is not None:
             written = [(w, each) for w, each in written if self.origins.may_be_of(each.target, w, origins)]
-        if self.within is not None and variable.kind == "member":
+        if variable.kind == "member":
             # What another program writes into its own object, unless nothing that runs writes it.
             written = [(w, each) for w, each in written if self._runs(w)] or written
         rows, given = self._select_given(written)
@@ -552,6 +735,8 @@ class FlowValues:
         for writer, others in group_pairs(row for row in rows if row[0] is not fn or not line).items():
             if remade and writer is not fn and self.code.is_constructor(writer):
                 continue
+            if self._works:
+                self._works[-1].note_maker(writer, self.made.get(writer))
             if writer in self.made and self._is_made_otherwise(writer):
                 continue
             found.add(self._evaluate_elsewhere(variable, writer, others, filled, origins, seen), stays=True)
@@ -595,6 +780,8 @@ class FlowValues:
 
     def _is_made_otherwise(self, fn: Fn) -> bool:
         """Whether the objects that it is about are made by other constructors than this one."""
+        if self._works:
+            self._works[-1].made = self.made
         owner = self.code.find_owner(fn)
         others = (one for one, rows in self.made.items() if rows and self.code.find_owner(one) is owner)
         return not self.made[fn] and any(others)
@@ -633,6 +820,9 @@ class FlowValues:
     def _select_given(self, rows: Sequence[tuple[Fn, Assignment]]) -> tuple[Sequence[tuple[Fn, Assignment]], bool]:
         """Of assignments those that may be with the arguments of the command line; where an option that is given sets
         the variable, that alone. And whether one does."""
+        if not any(self.command_line.is_asked(writer, each.guard) for writer, each in rows):
+            return rows, False
+        self._note_arguments()
         if self.arguments is None:
             return rows, False
         may = [row for row in rows if not self.command_line.excludes(row[0], row[1].guard, self.arguments)]
@@ -680,13 +870,21 @@ class FlowValues:
     def _decide_branch(self, guard: int, fn: Fn, seen: tuple) -> DecidedCondition:
         """Whether a place in a function is come to, as far as the launch decides it by parameters, or by how many
         arguments it gives; holds is None for all else, and for what is asked for by the way."""
-        if guard < 0 or len(seen) > _NEAR or not (self.settings or self.arguments):
+        if guard < 0 or not self._find_asking(fn, guard):
+            return DecidedCondition()
+        if self.command_line.is_asked(fn, guard):
+            self._note_arguments()
+        is_open = bool(self.settings or self.arguments)
+        if self._works:
+            self._works[-1].is_open = is_open
+            self._works[-1].note_depth(_NEAR, len(seen))
+        if not is_open or len(seen) > _NEAR:
             return DecidedCondition()
         opens = True
         for place in fn.list_guards_around(guard):
             one = fn.facts.guards[place]
             number = None if self.arguments is None else self.command_line.decide_number(one, self.arguments)
-            asks = one.kind in ASKING and not self.parameter_words.isdisjoint(_WORD.findall(one.text))
+            asks = self._may_ask(one)
             decided = self._decide_guard(one, fn, seen) if asks and not self._is_asking(one, fn, seen) else None
             if number is not None:
                 decided = DecidedCondition(number, frozenset(("given",)))
@@ -695,6 +893,19 @@ class FlowValues:
             elif not decided.holds:
                 return decided
         return DecidedCondition(opens or None)
+
+    def _may_ask(self, guard: Guard) -> bool:
+        """Whether a guard may ask for a parameter, by what stands in it."""
+        return guard.kind in ASKING and not self.parameter_words.isdisjoint(_WORD.findall(guard.text))
+
+    def _find_asking(self, fn: Fn, guard: int) -> bool:
+        """Whether a guard of a function, or one around it, may ask for a parameter or for arguments."""
+        known = self._asking.get((fn, guard))
+        if known is None:
+            around = (fn.facts.guards[place] for place in fn.list_guards_around(guard))
+            known = any(map(self._may_ask, around)) or self.command_line.is_asked(fn, guard)
+            self._asking[fn, guard] = known
+        return known
 
     @cached_property
     def parameter_words(self) -> frozenset[str]:
@@ -723,7 +934,9 @@ class FlowValues:
         elif each.operator == "for":
             yield from self._evaluate_elements(each.value, writer, each.line, seen)
         elif each.operator == "+=":
-            yield FlowValue(None, "unresolved", f"`{each.target}` is put together in steps")
+            # What is counted has other values beside the first.
+            counted = each.value.kind == "number"
+            yield FlowValue(None, "unresolved", f"`{each.target}` is put together in steps", counted)
 
     def _runs_over_all(self, fn: Fn, line: int) -> bool:
         """Whether a loop does what stands on a line in every turn, not only for options that it recognises."""
@@ -732,9 +945,12 @@ class FlowValues:
 
     def _evaluate_references(self, variable: Variable, seen: tuple) -> Iterator[FlowValue]:
         """What functions write into a variable that is passed to them by reference."""
+        passed = self.code.list_passed(variable)
+        if passed and self._works:
+            self._works[-1].note_depth(_FAR, len(seen))
         if len(seen) > _FAR:
             return  # from hand to hand: a walk over everything that is passed on would not end in time
-        for caller, call, place in self.code.list_passed(variable):
+        for caller, call, place in passed:
             for target in self.code.list_targets(call.callee, caller):
                 parameters = target.facts.parameters
                 if place < len(parameters) and "&" in parameters[place].type and "const" not in parameters[place].type:
@@ -774,12 +990,20 @@ class FlowValues:
             cls, _, member = name.replace(".", "::").rpartition("::")
             found_class = self.code.find_class(cls, fn.source, fn.scope)
             if found_class is not None:
-                yield from self.evaluate_variable(Variable("member", found_class.key, member), fn, seen)
+                variable = Variable("member", found_class.key, member)
+                defined = self.code.list_definitions(f"{found_class.name}::{member}")
+                for constant, source in defined if len({one.value for one, _ in defined}) == 1 else ():
+                    yield from self._evaluate(constant.value, self.code.find_first(source, fn), constant.line, seen)
+                    return
+                yield from self.evaluate_variable(variable, fn, seen)
 
     def _evaluate_passed(self, fn: Fn, place: int, parameter: FlowParameter, seen: tuple) -> Iterator[FlowValue]:
         """What callers pass for a parameter, and its default where one of them, or nobody that is known, passes it."""
         given, lacking = False, False
         only = self.way.get(fn)
+        if self._works:
+            self._works[-1].note_way(fn, only)
+            self._works[-1].note_maker(fn, self.made.get(fn))
         calls = ((caller, call.arguments, call.line) for caller, call in self.code.callers.get(fn, ())
                  if only is None or call is only)  # fmt: skip
         for caller, arguments, line in self.made.get(fn) or (*calls, *self.code.list_constructed(fn)):
@@ -793,7 +1017,7 @@ class FlowValues:
             yield from self._evaluate(default, fn, fn.facts.line, seen)
         elif not given:
             reason = f"an argument of `{fn.name or 'the module'}`, which nothing here calls"
-            yield FlowValue(None, "given", reason, uncalled=self.code.is_idle(fn))
+            yield FlowValue(None, "given", reason, uncalled=self.code.is_idle(fn), unpassed=True)
 
     def _find_given(self, value: FlowExpr, fn: Fn) -> tuple[int, FlowParameter] | None:
         """The parameter of a constructor that a value is, None for all else."""
@@ -812,7 +1036,10 @@ class FlowValues:
                     yield from self._evaluate(argument, maker, line, seen)
 
     def _runs(self, fn: Fn) -> bool:
-        return self.within is None or fn in self.within
+        runs = self.within is None or fn in self.within
+        if self._works:
+            (self._works[-1].runs if runs else self._works[-1].idle).add(fn)
+        return runs
 
     def _call(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         last = get_tail(value.text)
@@ -825,6 +1052,10 @@ class FlowValues:
         if last in _NODE_NAMESPACE and not value.parts and not own:
             yield FlowValue(NAMESPACE)
             return
+        python = fn.source.facts.language == "python"
+        if python and last in _STRING_METHODS and (head or value.receiver is not None):
+            yield from self._evaluate_string_method(value, fn, line, seen)
+            return
         if head and (last in _SAME or (last == "get" and value.receiver is not None and not value.parts)):
             if value.receiver is not None and value.receiver.kind == "call":
                 yield from self._evaluate(value.receiver, fn, line, seen)
@@ -833,7 +1064,35 @@ class FlowValues:
             else:
                 yield from self._evaluate_name(head, fn, line, seen)
             return
+        if head and last in ("get", "at") and value.parts and value.receiver is None:
+            chosen = self.elements.select(FlowExpr("name", head), value.parts[0], fn, line)
+            if chosen:
+                for one in chosen:
+                    yield from self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value)))
+                return
+        if value.text == "format" and len(value.parts) == 2 and (python or value.parts[0].kind != "text"):
+            written = next(iter(self._evaluate(value.parts[1], fn, line, seen)), _NOT_GIVEN).text
+            for one in self._evaluate(value.parts[0], fn, line, seen):
+                yield one if one.text is None else _format(one, written)
+            return
+        if value.text in ("fmt::format", "std::format") and value.parts and value.parts[0].kind == "text":
+            joined = make_join(format_pieces(value.parts[0].text), value.parts[1:])
+            if joined is not None:
+                yield from self._evaluate_join(joined, fn, line, seen)
+                return
+        if last == "to_string" and len(value.parts) == 1:
+            found = list(self._evaluate(value.parts[0], fn, line, seen))
+            # Of what is no whole number, it is not the same text.
+            if found and all(one.text is not None and is_number(one.text) for one in found):
+                yield from found
+            else:
+                reasons = [one.reason for one in found if one.text is None]
+                yield FlowValue(None, "unresolved", (reasons or ["a number as a text is not followed"])[0])
+            return
         # Options of ROS 1 are named by the name they are for.
+        if last == "string" and len(value.parts) > 1:
+            yield FlowValue(None, "unresolved", f"what `{value.text}` makes of several values is not followed")
+            return
         if (last in _OF_FIRST or (last.startswith("create") and "Options::" in value.text)) and value.parts:
             yield from self._evaluate(value.parts[0], fn, line, seen)
             return
@@ -846,6 +1105,43 @@ class FlowValues:
             yield from self._evaluate_join(FlowExpr("join", "", (first, FlowExpr("text", "/"), second)), fn, line, seen)
             return
         yield from self._evaluate_inner(value.text, fn, line, seen, value.parts)
+
+    def _evaluate_string_method(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
+        """What a method of a string of Python gives, and `os.path.join`."""
+        head, _, method = value.text.rpartition(".")
+        unknown = FlowValue(None, "unresolved", f"what `{value.text}` gives is not known")
+        arguments = value.parts
+        if method == "join" and value.receiver is None and head.rpartition(".")[2] in ("path", "osp", "posixpath"):
+            pieces = [_take_first(self._evaluate(part, fn, line, seen)) for part in arguments]
+            for row in islice(product(*pieces), _MOST):
+                joined = _join(row)
+                texts = [one.text or "" for one in row]
+                yield joined if joined.text is None else joined._replace(text=posixpath.join(*texts))
+            return
+        if method == "join":
+            listed = arguments[0] if len(arguments) == 1 and arguments[0].kind == "list" else None
+            if listed is None or value.receiver is None:
+                yield unknown
+                return
+            between = [part for each in listed.parts for part in (value.receiver, each)][1:]
+            yield from self._evaluate_join(FlowExpr("join", "", tuple(between)), fn, line, seen)
+            return
+        if value.receiver is not None:
+            held = list(self._evaluate(value.receiver, fn, line, seen))
+        elif head.endswith("()"):
+            held = list(self._evaluate_inner(head.removesuffix("()"), fn, line, seen))
+        else:
+            held = list(self._evaluate_name(head, fn, line, seen))
+        given = [_take_first(self._evaluate(part, fn, line, seen)) for part in arguments]
+        for one, *row in islice(product(held, *given), _MOST):
+            texts = [each.text for each in row if each.text is not None]
+            if one.text is None or len(texts) < len(row):
+                yield one if one.text is None else unknown
+                continue
+            try:
+                yield _join((one, *row))._replace(text=getattr(one.text, method)(*texts))
+            except (TypeError, AttributeError):
+                yield unknown
 
     def _evaluate_inner(
         self, callee: str, fn: Fn, line: int, seen: tuple, arguments: tuple[FlowExpr, ...] | None = None
@@ -929,7 +1225,7 @@ class FlowValues:
     def _find_setting_of(self, use: FrameworkCall, name: str) -> FlowValue | None:
         """What a launch sets the parameter of a use to; None for nothing."""
         setting = self._make_setting_name(name, use)
-        given = self.asked[setting] = self.find_setting(setting) if name else None
+        given = self.find_setting(setting) if name else None
         if self._works:
             self._works[-1].settings[setting] = given
         return given
@@ -953,8 +1249,7 @@ class FlowValues:
         others = [other for other in declared if other.call is not use.call]
         # Of a program by its own code: programs of one package may declare a parameter each for itself.
         near = [other for other in others if other.fn.source is use.fn.source]
-        running = [other for other in others if self.within is not None and other.fn in self.within]
-        for other in near or running or others:
+        for other in near or self._select_running(others) or others:
             if other.fn.source.package != use.fn.source.package:
                 continue
             for one in self._evaluate_parameter(other, (*seen, mark)):
@@ -964,6 +1259,12 @@ class FlowValues:
         if not yielded:
             reason = f"the parameter `{name}` has no default here" if name else "which parameter it is, is not known"
             yield FlowValue(None, "given", reason)
+
+    def _select_running(self, uses: list[FrameworkCall]) -> list[FrameworkCall]:
+        """The uses in functions that run, where it is known which do."""
+        if self._works:
+            self._works[-1].is_limited = self.within is not None
+        return [use for use in uses if self._runs(use.fn)] if self.within is not None else []
 
     @cached_property
     def declared(self) -> dict[str, list[FrameworkCall]]:
@@ -1014,6 +1315,11 @@ def _mark_unknown(values: Iterable[FlowValue]) -> list[FlowValue]:
     return found if any(one.text is not None for one in found) else [one.mark() for one in found]
 
 
+def _get_key(value: FlowExpr) -> FlowExpr:
+    """Of a pair, as a dictionary has it for each key, the key; all else as it is."""
+    return value.parts[0] if value.kind == "list" and len(value.parts) == 2 else value
+
+
 def _mentions(value: FlowExpr, path: str) -> bool:
     """Whether an expression has a path in it."""
     named = value.text == path or value.text.startswith(f"{path}.")
@@ -1028,7 +1334,18 @@ def _restore_alone(values: list[FlowValue]) -> list[FlowValue]:
 
 def _is_string(value: FlowExpr) -> bool:
     """Whether an expression shows itself to be a string, and no number."""
-    return value.kind == "text" or (value.kind == "join" and any(map(_is_string, value.parts)))
+    written = value.kind == "text" or (value.kind == "number" and value.text[:1] == "'")
+    return written or (value.kind == "join" and (not value.text or any(map(_is_string, value.parts))))
+
+
+_COUNTED = re.compile(r"0?[0-9]{0,2}d?")
+
+
+def _format(value: FlowValue, spec: str | None) -> FlowValue:
+    """A value as a format of Python writes it."""
+    if spec is None or not _COUNTED.fullmatch(spec) or not is_number(value.text or ""):
+        return FlowValue(None, "unresolved", f"how `{spec or '{}'}` writes it is not followed")
+    return value._replace(text=format(int(value.text or ""), spec))
 
 
 def _is_sure(values: list[FlowValue]) -> bool:

@@ -18,14 +18,15 @@ from ..package import Watched
 from ..workspace import Package, Workspace, link
 from .callers import Callers, build_callers
 from .defined import DefinedInterfaces
-from .file_selection import BUILD, compute_code_key, is_code, make_code_selector
-from .graph import Graph
+from .file_selection import BUILD, compute_code_key, is_code, list_run_by_hand, make_code_selector
+from .graph import COPIED, Graph, Unresolved
 from .join import Join
 from .launches import Launch
 from .nodes import BuiltPackage, asks_for_name, find_entry_point
 from .plugins import assign_plugins, list_plugin_loads
 from .simulated import add_simulated
 from .system import ChosenLaunch, join_launched, merge_launches
+from .text_search import add_text_coverage
 from .uncompiled import find_uncompiled
 
 _LIBRARIES = frozenset(("library", "module", "interface"))
@@ -41,6 +42,8 @@ class WorkspaceFlow:
         self._workspace, self._store = workspace, workspace.extraction.store
         # Processes to use.
         self.jobs = 1
+        # Launch files that are started together, by the name of their system.
+        self.systems: dict[str, tuple[ChosenLaunch, ...]] = {}
 
     @cached_property
     def code(self) -> Join:
@@ -119,9 +122,10 @@ def get_facts(workspace: Workspace) -> ExtractedFacts:
 
 
 def list_code(workspace: Workspace) -> dict[str, str]:
-    """The code of the packages, by path the package it belongs to; tests are left out."""
+    """The code of the packages, by path the package it belongs to, and programs outside of all packages, with an empty
+    name; tests are left out."""
     extraction = get_facts(workspace)
-    found: dict[str, str] = {}
+    found = dict.fromkeys(list_run_by_hand(extraction.kinds, workspace.extraction.kinds), "")
     for package in workspace:
         start = len(package.path) + 1 if package.path else 0
         for path in package.linked.files:
@@ -159,6 +163,9 @@ def list_built(workspace: Workspace, files: Mapping[str, FlowFile]) -> Iterator[
         }
         scripts, plugins = _find_scripts(package, files), _collect_plugins(package)
         yield BuiltPackage(package.name, executables, libraries, components, scripts, links, plugins)
+    loose = [path for path, owner in list_code(workspace).items() if not owner and path in files and _runs(files[path])]
+    if loose:
+        yield BuiltPackage("", {}, {}, {}, {path: path for path in loose}, {})
 
 
 def _collect_plugins(package: Package) -> dict[str, str]:
@@ -209,7 +216,7 @@ def join_code(workspace: Workspace) -> Join:
     files: dict[str, FlowFile] = {path: file for path, file in facts.items() if file is not None}
     from .started import InWorkspace  # needs all that follows launch files
 
-    defined = DefinedInterfaces(workspace.interface_names, workspace.ros)
+    defined = DefinedInterfaces(workspace.interface_names, workspace.ros, workspace.interface_texts)
     find_file = InWorkspace(workspace).find_workspace_path
     built = list_built(workspace, files)
     uncompiled = find_uncompiled(workspace, files)
@@ -235,16 +242,32 @@ def make_graph(
 
         start = join_launched([follow_workspace_launch(workspace, one.path, one.arguments) for one in chosen])
         code = get_flow(workspace).code
-        return add_bridges(code.build(root, rev, _list_unread(code), start), start, InWorkspace(workspace))
+        found = add_bridges(code.build(root, rev, _list_unread(code), start), start, InWorkspace(workspace))
+        return _name_copies(found, workspace)
 
     def make() -> Graph:
         code = get_flow(workspace).code
-        return code.build(unread=_list_unread(code))
+        return add_text_coverage(code.build(unread=_list_unread(code)), code, workspace.read)
 
     flow = get_flow(workspace)
     flow.jobs = jobs
-    graph = recall(store, "graph", flow.key, Graph, make) if code_alone else flow.system
+    # What the system has of its code names copies already.
+    graph = _name_copies(recall(store, "graph", flow.key, Graph, make), workspace) if code_alone else flow.system
     return msgspec.structs.replace(graph, root=root, rev=rev)
+
+
+def _name_copies(graph: Graph, workspace: Workspace) -> Graph:
+    """A graph that says which packages it has nothing of, since another one has their name."""
+    folders = {package.name: package.path for package in workspace}
+    copies = tuple(
+        Unresolved(COPIED, f"another package of this name is read, in `{folders.get(one.name) or '.'}`",
+                   one.manifest_path, 1, one.name)
+        for one in workspace.hidden
+    )  # fmt: skip
+    if not copies:
+        return graph
+    coverage = msgspec.structs.replace(graph.coverage, unresolved=(*graph.coverage.unresolved, *copies))
+    return msgspec.structs.replace(graph, coverage=coverage)
 
 
 def _list_unread(join: Join) -> list[str]:

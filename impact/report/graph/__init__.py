@@ -5,7 +5,7 @@ from importlib import import_module
 from typing import Any
 
 from ...model.flow.definitions import Sections
-from ...model.flow.graph import LOST_INCLUDE, Graph
+from ...model.flow.graph import COPIED, LOST_INCLUDE, Graph
 from ...model.flow.select import NothingSelected, Selection, extract_part, select_graph, select_whole_nodes
 from ..style import Style
 from .text import WIDE
@@ -52,6 +52,7 @@ def list_unknown_names(graph: Graph, **asked: Any) -> list[str]:
         (one.path, one.line, f"{one.what}{f' `{one.written}`' * bool(one.written)}: {one.reason}")
         for one in graph.coverage.unresolved
         if not one.what.startswith(("started ", LOST_INCLUDE)) and not one.what.endswith(" callback")
+        if one.what != COPIED
         if not selected.asked or one.path in paths
     ]
     lost += [

@@ -126,7 +126,8 @@ def _make_parameters(parameters: Iterable[ParameterUse], left_out: list[str]) ->
             continue
         made = make_parameter(one.default)
         if made is None or "<" in one.name:
-            left_out.append(f"parameter {one.name} at {one.path}:{one.line}: its type is not known")
+            lacking = "its name is known in part" if "<" in one.name else "its type is not known"
+            left_out.append(f"parameter {one.name} at {one.path}:{one.line}: {lacking}")
         else:
             found[one.name] = made
     return found

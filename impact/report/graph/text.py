@@ -11,6 +11,8 @@ from ..columns import UNBROKEN, LinePart, lay_out
 from ..style import PLAIN, Style
 from .conditions import ROOM, GuardKey, find_shared, format_when
 
+# Of what a search of the text finds beside what is understood.
+_SEARCHED = 5
 _SHOWN = 20
 _HANG, _NODES = 6, 14
 _SIGN = {"added": "+ ", "removed": "- ", "changed": "~ ", "": "  "}
@@ -212,6 +214,19 @@ def render_coverage(
             shown = paths if everything else paths[:5]
             rest = f" and {len(paths) - len(shown)} more" if len(shown) < len(paths) else ""
             yield from lay_out([LinePart(f"{len(paths)} {what}: {', '.join(shown)}{rest}")], style, 0, 2)
+    if coverage.missed:
+        found = sum(one.found for one in coverage.by_text)
+        said = f"{len(coverage.missed):,} of {format_count(found, 'call')} that a search of the text finds not understood:"
+        yield from lay_out([LinePart(said)], style, 0, 2)
+        for one in coverage.missed if everything else coverage.missed[:_SEARCHED]:
+            pieces = [LinePart("", path=f"{one.path}:{one.line}:"), LinePart(f"`{one.written}`")]
+            yield from lay_out(pieces, style, 2, 4)
+        if not everything and len(coverage.missed) > _SEARCHED:
+            yield from lay_out([LinePart(f"and {len(coverage.missed) - _SEARCHED:,} more; --all lists them")], style, 2, _HANG)
+        worst = [one for one in coverage.by_text if one.found >= 4 and 2 * one.understood < one.found]
+        for one in worst:
+            said = f"of package `{one.package}` alone {one.understood} of {one.found}"
+            yield from lay_out([LinePart(said)], style, 2, 4)
     shown = near if everything else near[:_SHOWN]
     for one in shown:
         written = f" `{one.written}`" if one.written else ""

@@ -32,9 +32,9 @@ class ObservedMember(NamedTuple):
 
 
 class CppCallback(NamedTuple):
-    """A callback with where it is given to the framework. kind: `subscriber`, `service`, `timer` or `action`. path,
-    line: of the call that subscribes. site: the function that it stands in. function: the callback's own, None where
-    it is not known. message_type: `package/Name`, empty for a timer."""
+    """A callback with where it is given to the framework. kind: `subscriber`, `service`, `timer` or `action`, or `main`
+    for a program from its start. path, line: of the call that subscribes. site: the function that it stands in.
+    function: the callback's own, None where it is not known. message_type: `package/Name`, empty for a timer."""
 
     kind: str
     path: str
@@ -48,6 +48,8 @@ class CppCallback(NamedTuple):
     @property
     def name(self) -> str:
         """The callback's name."""
+        if self.kind == "main" and not self.site.name:
+            return "main"
         return self.function.name if self.function is not None else f"{self.site.name}:{self.line}"
 
 
@@ -61,7 +63,12 @@ def list_callbacks(workspace: Workspace, graph: Graph, language: str) -> list[Cp
     join = get_flow(workspace).code
     ends = group_pairs(((one.role, one.path, one.line), one) for one in graph.endpoints)
     found: dict[tuple[str, str, int, str], CppCallback] = {}
-    for each in (*_list_endpoints(join, ends, language), *_list_timers(join, graph, language)):
+    rows = (
+        *_list_endpoints(join, ends, language),
+        *_list_timers(join, graph, language),
+        *_list_mains(join, graph, language),
+    )
+    for each in rows:
         found.setdefault((each.kind, each.path, each.line, each.name), each)
     return sorted(found.values(), key=lambda each: (each.path, each.line, each.kind, each.name))
 
@@ -96,6 +103,22 @@ def _list_timers(join: Join, graph: Graph, language: str) -> Iterator[CppCallbac
         for callback in site.callbacks:
             names = tuple(dict.fromkeys(each for each in nodes.get((path, line), []) if each))
             yield CppCallback("timer", path, line, fn, callback, "", (), names)
+
+
+def _list_mains(join: Join, graph: Graph, language: str) -> Iterator[CppCallback]:
+    """Where programs begin that publish something before or beside their callbacks: main, the top of a script, or the
+    constructor of a class that nothing of the workspace makes. The function is given as if it were a callback."""
+    nodes: dict[tuple[str, int], dict[str, None]] = {}
+    for one in graph.publishes:
+        for way in one.by:
+            if way.trigger.kind == "start":
+                nodes.setdefault((way.trigger.path, way.trigger.line), {})[one.node] = None
+    for (path, line), names in sorted(nodes.items()):
+        for fn in join.code.functions_in.get(path, ()):
+            if fn.facts.line == line and fn.source.facts.language == language:
+                owned = tuple(each for each in names if each)
+                yield CppCallback("main", path, line, fn, fn, "", (), owned)
+                break
 
 
 class ClassReader:

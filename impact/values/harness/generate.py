@@ -14,10 +14,15 @@ from typing import NamedTuple
 from ...model.flow.code import Fn, get_tail
 from ...model.flow.types import Cls
 from .callbacks import ClassReader, CppCallback, ObservedMember
-from .compile import SourceUnit
+from .sources import SourceUnit
 
 _NODES = ("Node", "LifecycleNode")
 _HANDLES = ("SharedPtr", "UniquePtr", "Publisher", "Subscriber", "Subscription", "NodeHandle", "mutex", "thread")
+
+
+_FRAMEWORK = re.compile(
+    r"\b(?:ros|rclcpp\w*|tf2?|tf2_ros|message_filters|image_transport|actionlib|diagnostic_updater|nodelet)::"
+)
 
 
 class HarnessEntry(NamedTuple):
@@ -64,14 +69,15 @@ class HarnessWriter:
                     if block in left_out:
                         continue
                     first = len(lines) + 1
-                    lines += text.replace("RI_TAG", f"{number}_{way}{turn}").rstrip("\n").split("\n")
+                    made = text.replace("RI_TAG", f"{number}_{way}{turn}").rstrip("\n").split("\n")
+                    lines += [_leave_line(each) if each.strip() in left_out else each for each in made]
                     blocks[block] = (first, len(lines))
                     names.append(entry)
                     entries.setdefault(number, []).append(HarnessEntry(entry, way, callback))
         lines += [
             "",
             'extern "C" void ri_reset() {',
-            "  ri::phase = 0; ri::given = ri::last_given = nullptr; ri::prepare = nullptr;",
+            "  ri::phase = 0; ri::is_main = false; ri::given = ri::last_given = nullptr; ri::prepare = nullptr;",
             "}",
         ]
         lines += ["struct RiEntry { const char *name; void (*run)(); };"]
@@ -94,6 +100,9 @@ class HarnessWriter:
     def _write_built(self, callback: CppCallback) -> Iterable[str]:
         """The entries that construct the node, or run main."""
         site = callback.site
+        if callback.kind == "main":
+            yield from self._start_program(callback)
+            return
         cls = self._find_built(callback)
         # What is given in a class is best had by its object; in main or a function, by running main.
         if cls is not None:
@@ -103,6 +112,27 @@ class HarnessWriter:
                     yield self._build_object(callback, cls, types)
         elif get_tail(site.name) == "main" or "lambda" in site.name or self._has_main(site.source.path):
             yield self._run_main(callback)
+
+    def _start_program(self, callback: CppCallback) -> Iterable[str]:
+        """Entries that are main itself, or a constructor."""
+        head = ['extern "C" void ri_callback_RI_TAG() {', "  ri::is_main = true; ri::begin();"]
+        if get_tail(callback.site.name) == "main":
+            yield "\n".join([*head, *self._write_main_call(callback.site), "  ri_end();", "}"])
+            return
+        cls = self.reader.find_class(callback.site)
+        if cls is not None:
+            types = [each.type for each in callback.site.facts.parameters if each.default is None]
+            spaces, own = self._split_class(cls)
+            arguments = ", ".join(self._spell_argument(each) for each in types)
+            name = "::".join(("", *spaces, own))
+            yield "\n".join([*head, f"  new {name}({arguments});", "  ri_end();", "}"])
+
+    def _write_main_call(self, main: Fn) -> list[str]:
+        given = "1, ri_arguments" if len(main.facts.parameters) >= 2 else ""
+        return [
+            '  static char ri_program[] = "node"; static char *ri_arguments[] = {ri_program, nullptr};',
+            f"  ri_original_main({given});",
+        ]
 
     def choose_source(self, callback: CppCallback) -> str:
         """The file that the harness of a callback includes: the one that subscribes, or that of the callback where the
@@ -139,13 +169,10 @@ class HarnessWriter:
         lines = self._write_prepare(callback, None)
         lines += ['extern "C" void ri_callback_RI_TAG() {', *self._write_waiting(callback)]
         lines += ["  ri::prepare = &ri_prepare_RI_TAG_main;"]
-        call = "ri_original_main" if self._has_main(site.source.path) else ""
-        if not call:
+        if not self._has_main(site.source.path):
             return "\n".join([*lines, '  static_assert(false, "no main");', "}"])
         main = next(fn for fn in self.reader.code.functions_in[site.source.path] if fn.name == "main")
-        given = "1, ri_arguments" if len(main.facts.parameters) >= 2 else ""
-        lines += ['  static char ri_program[] = "node"; static char *ri_arguments[] = {ri_program, nullptr};']
-        lines += [f"  {call}({given});", "  ri::deliver_or_drop();", "}"]
+        lines += [*self._write_main_call(main), "  ri::deliver_or_drop();", "}"]
         return "\n".join(lines)
 
     def _build_object(self, callback: CppCallback, cls: Cls, types: list[str]) -> str:
@@ -239,7 +266,7 @@ class HarnessWriter:
     def _write_bare(self, callback: CppCallback) -> Iterable[str]:
         """The entry that calls the callback directly."""
         fn = callback.function
-        if fn is None or fn.is_lambda or "lambda@" in fn.name or callback.kind == "action":
+        if fn is None or fn.is_lambda or "lambda@" in fn.name or callback.kind in ("action", "main"):
             return
         cls = self.reader.find_class(fn)
         spaces, own = self._split_class(cls) if cls is not None else ([], "")
@@ -253,6 +280,7 @@ class HarnessWriter:
             if base:
                 lines.append(f"  {base}")
             lines += [f"  ri::make_member(node->{each.name});" for each in members]
+            lines += [f"  ri::forget(node->{each.name});" for each in members if not _is_of_framework(each)]
             lines += [f"  ri::set_member(node->{each.name}, {each.value});" for each in members if each.value]
             lines += _write_state(members, "node->", "this.", every=True)
             call = f"node->{get_tail(fn.name)}"
@@ -322,14 +350,26 @@ def spell_type(message_type: str, kind: str, ros: int) -> str:
     return f"::{package}::{name}" if ros == 1 else f"::{package}::{folder}::{name}"
 
 
+def _leave_line(line: str) -> str:
+    """What stands for a line that is left out. A member that cannot be watched may be changed without being seen."""
+    return "  ri::lose_member();" if "watch_member(" in line else ""
+
+
+def _is_of_framework(member: ObservedMember) -> bool:
+    """Whether a member is of a class of the facades, which works without its constructor's arguments."""
+    return _FRAMEWORK.search(member.type) is not None
+
+
 def _write_state(members: Sequence[ObservedMember], object_: str, prefix: str, every: bool) -> list[str]:
     """every: the constructor did not run, so that any member may have any value and publishers are made."""
     lines = []
+    if not every:
+        lines += [f"  ri::forget_cut({object_}{each.name});" for each in members if not _is_of_framework(each)]
     for each in members:
         name = each.name
         make = "true" if every else "false"
         lines.append(f'  ri::name_member({object_}{name}, "{get_tail(name)}", {make});')
-        if each.is_state or (every and not each.value):
+        if each.is_state:
             lines.append(f'  ri::fill_state({object_}{name}, "{prefix}{get_tail(name)}");')
     lines += [f'  ri::watch_member({object_}{e.name}, "{get_tail(e.name)}");' for e in members if e.is_read]
     return lines

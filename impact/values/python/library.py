@@ -14,9 +14,9 @@ from typing import Any
 
 import z3
 
-from . import operators, texts
+from . import arrays, operators, texts
 from .messages import Messages
-from .modules import Handle, KnownMethod, Outside, PythonClass, PythonFunction, PythonObject, TimeValue
+from .modules import Handle, KnownMethod, ModuleCode, Outside, PythonClass, PythonFunction, PythonObject, TimeValue
 from .terms import (
     FLOAT64,
     ListValue,
@@ -92,6 +92,9 @@ _QUIET = frozenset((
     "cv_bridge.CvBridge", "rclpy.qos.QoSProfile", "rospy.get_namespace", "rospy.get_caller_id",
     "rospy.get_published_topics",
 ))  # fmt: skip
+_PLAIN_NODES = frozenset(("rclpy.node.Node", "rclpy.create_node"))
+_ASKS_WHETHER_UP = frozenset(("rospy.is_shutdown", "rclpy.ok"))
+_SLEEPS = frozenset(("rospy.sleep", "time.sleep", "rospy.rostime.wallsleep"))
 _NODE_QUIET = frozenset((
     "get_name", "get_namespace", "declare_parameters", "count_subscribers", "count_publishers", "wait_for_service",
     "get_fully_qualified_name", "get_topic_names_and_types", "get_node_names", "has_parameter", "resolve_topic_name",
@@ -140,13 +143,21 @@ def call_outside(machine: Machine, name: str, given: list[Any], named: dict[str,
         function = _MATH.get(word) if name.startswith("math.") or word in _SAME_IN_NUMPY else None
         if function is not None and all(is_number(one) for one in given) and given:
             return function(machine, given)
+        if not name.startswith("math.") and (array := arrays.make_array(word, given, named)) is not None:
+            return array
     if name in _LOGS:
         if not machine.is_quiet:
             run.logs.append(name.rpartition(".")[2])
         return None
+    if run.program is not None and name in _ASKS_WHETHER_UP:
+        return run.program.is_up() != (name == "rospy.is_shutdown")
+    if run.program is not None and name in _SLEEPS:
+        run.program.sleep()
     type_ = find_message_type(name)
     if type_:
         return _make_message(machine, type_, given, named)
+    if name in _PLAIN_NODES:
+        return _make_plain_node()
     if name in _HANDLES:
         content = given[1] if _HANDLES[name] == "publisher" and len(given) > 1 else named.get("data_class")
         about = find_message_type(content.name) if isinstance(content, Outside) else ""
@@ -189,6 +200,13 @@ def call_outside(machine: Machine, name: str, given: list[Any], named: dict[str,
     return Opaque(f"{name}()")
 
 
+def _make_plain_node() -> PythonObject:
+    """A node that is no object of an own class."""
+    plain = ast.ClassDef(name="Node", bases=[], keywords=[], body=[], decorator_list=[])
+    module = ModuleCode("rclpy.node", "", ast.Module(body=[], type_ignores=[]), is_loaded=True)
+    return PythonObject(PythonClass(plain, module, (Outside("rclpy.node.Node"),), {}))
+
+
 def _compute_outside(machine: Machine, name: str, given: Sequence[Any]) -> Any:
     """A function that only computes: any value. It may raise what nobody sees here, which is said."""
     if not machine.is_quiet:
@@ -211,7 +229,10 @@ def _make_message(machine: Machine, type_: str, given: Sequence[Any], named: dic
 def _make_parameter(machine: Machine, given: Sequence[Any], named: dict[str, Any]) -> Any:
     name = given[0] if given and isinstance(given[0], str) else ""
     default = given[1] if len(given) > 1 else named.get("default")
-    return make_like(machine, f"~param.{name.lstrip('~/')}" if name else machine.run.make_name("~param"), default)
+    path = f"~param.{name.lstrip('~/')}" if name else machine.run.make_name("~param")
+    value = make_like(machine, path, default)
+    machine.run.note_default(path, default)
+    return value
 
 
 def make_like(machine: Machine, path: str, value: Any) -> Any:
@@ -324,6 +345,23 @@ def find_member(machine: Machine, owner: Any, name: str) -> Any:
     return KnownMethod(owner, name)
 
 
+def _convert_to_bytes(machine: Machine, value: int | Whole, given: list[Any], named: dict[str, Any]) -> Any:
+    """`value.to_bytes(length, order, signed=...)`. Raises what Python raises for a number that does not fit."""
+    length = given[0] if given else named.get("length", 1)
+    is_signed = named.get("signed", False)
+    if type(length) is not int or type(is_signed) is not bool or not 0 < length <= 8:
+        raise NotModelledError("to_bytes() of a length that is not known")
+    bits = 8 * length
+    low, high = (-(1 << (bits - 1)), (1 << (bits - 1)) - 1) if is_signed else (0, (1 << bits) - 1)
+    for kind, limit in ((ast.Lt, low), (ast.Gt, high)):
+        if machine.is_true(operators.compare(kind, value, limit)):
+            below_zero = kind is ast.Lt and not is_signed
+            raise machine.run.throw(
+                "OverflowError", "can't convert negative int to unsigned" if below_zero else "int too big to convert"
+            )
+    return Opaque("bytes of a number")
+
+
 def call_method(machine: Machine, owner: Any, name: str, given: list[Any], named: dict[str, Any]) -> Any:
     """Calls a method of a value that the executor itself knows."""
     if isinstance(owner, (str, SymbolicText)):
@@ -336,6 +374,8 @@ def call_method(machine: Machine, owner: Any, name: str, given: list[Any], named
         return _call_handle_method(machine, owner, name, given, named)
     if isinstance(owner, PythonObject):
         return _call_base(machine, owner, name, given, named)
+    if isinstance(owner, (int, Whole)) and name == "to_bytes":
+        return _convert_to_bytes(machine, owner, given, named)
     if isinstance(owner, TimeValue) or (
         isinstance(owner, Record) and name in ("to_sec", "to_nsec", "to_time", "is_zero")
     ):
@@ -536,6 +576,8 @@ def _call_handle_method(machine: Machine, handle: Handle, name: str, given: list
             exception.bases = ("LookupException", "ExtrapolationException", "ConnectivityException", "Exception")
             raise exception
         return Opaque(f"{handle.name}.{name}()")
+    if kind == "rate" and name == "sleep" and run.program is not None:
+        run.program.sleep()
     if kind in ("timer", "subscription", "rate", "server"):
         if name in ("shutdown", "cancel", "reset", "unregister", "destroy") and loud:
             run.note_effect("member", handle.name)
@@ -553,6 +595,7 @@ def _call_base(machine: Machine, owner: PythonObject, name: str, given: list[Any
         key = given[0] if given and isinstance(given[0], str) else ""
         default = given[1] if len(given) > 1 else named.get("value")
         value = make_like(machine, f"~param.{key}", default) if key else Opaque("~param")
+        machine.run.note_default(f"~param.{key}", default)
         owner.members.setdefault("~parameters", {})[key] = value
         return Handle("parameter", key, value)
     if name in ("get_parameter", "get_parameter_or"):

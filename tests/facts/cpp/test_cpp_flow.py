@@ -469,12 +469,39 @@ def test_a_header_guard_is_no_condition_and_others_are():
         "class K { Q_OBJECT\npublic Q_SLOTS:\n  void a();\nsignals:\n  void b();\n};",
         "class FOO_EXPORT K : public B { FOO_EXPORT K(); FOO_EXPORT static int a(); };",
         'void k() { printf("a %" PRIu64 " b", c); }',
+        "struct P {\n  // of PCL\n  ADD_POINT_4D  // x, y, z\n  float i;\n  ALIGNED_NEW_\n} ALIGN_16;",
+        "REGISTER_POINT_STRUCT(n::P,\n  (float, x, x)  // so\n  (float, y, y)\n)\n",
     ],
 )
 def test_macros_and_what_the_grammar_does_not_know_hide_nothing(text):
     facts = extract(f"{text}\nvoid f() {{ g(); }}\n".encode())
     assert not facts.unread
     assert guards(next(f for f in facts.functions if f.name == "f")) == []
+
+
+def test_a_word_alone_on_its_line_may_be_a_value():
+    facts = extract(b"""
+    enum E {
+      FIRST_ONE,
+      SECOND_ONE
+    };
+    int x =
+      FIRST_VALUE
+      + 1;
+    struct P {
+      ADD_POINT_4D
+      float i;
+    };
+    void f() {
+      g(
+        THIRD_VALUE
+      );
+    }
+    """)
+    assert not facts.unread
+    (fn,) = (one for one in facts.functions if one.name == "f")
+    assert [said(argument) for argument in fn.calls[0].arguments] == ["name:THIRD_VALUE"]
+    assert [(member.name, member.type) for member in facts.classes[-1].members] == [("i", "float")]
 
 
 @pytest.mark.parametrize("text", [

@@ -220,7 +220,7 @@ def test_groups_of_exceptions():
         ("'%s %s' % a", "<'%s %s' % a>"),
         ("'%*d' % a", "<'%*d' % a>"),
         ("a % 3", "<a % 3>"),
-        ("f'{a}/b{c.d:>3}'", "join(a, '/b', c.d)"),
+        ("f'{a}/b{c.d:>3}'", "join(a, '/b', call format(c.d, '>3'))"),
         ("f'x'", "'x'"),
         ("f''", "''"),
         ("'{}/{n}{}'.format(a, b, n=c)", "join(a, '/', c, b)"),

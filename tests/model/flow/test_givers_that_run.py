@@ -105,3 +105,35 @@ def test_a_function_of_another_package_is_known_by_its_whole_name():
     }
     found = graph(files)
     assert {topic for _, topic, _ in ends(found, "publisher")} == {"/robot/state", "?"}
+
+
+def test_lists_are_those_that_the_program_itself_gives():
+    shared = """
+        from rclpy.node import Node
+        from std_msgs.msg import Empty
+        class Panel(Node):
+            def __init__(self, name, topics, more=("/more",)):
+                super().__init__(name)
+                self.topics = topics
+                for topic in self.topics:
+                    self.create_publisher(Empty, topic, 1)
+                for topic in more:
+                    self.create_publisher(Empty, topic, 1)
+    """
+    program = """
+        import rclpy
+        from deck.panel import Panel
+        def main():
+            rclpy.spin(Panel(%s))
+    """
+    files = {
+        "deck/deck/panel.py": shared, "deck/deck/__init__.py": "",
+        "deck/one.py": program % "'one', ['/a', '/b']", "deck/two.py": program % "'two', ['/c'], ('/d',)",
+    }  # fmt: skip
+    found = {
+        (node, topic) for node, topic, _ in ends(graph(files), "publisher") if node in ("deck/one.py", "deck/two.py")
+    }
+    assert found == {
+        ("deck/one.py", "/a"), ("deck/one.py", "/b"), ("deck/one.py", "/more"),
+        ("deck/two.py", "/c"), ("deck/two.py", "/d"),
+    }  # fmt: skip

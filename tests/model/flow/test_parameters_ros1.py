@@ -1,7 +1,7 @@
 """Which parameter of ROS 1's server a name means: relative to the node's namespace, private, global, or to a handle."""
 
 import pytest
-from joining import graph_on_disk, manifest
+from joining import graph, graph_on_disk, manifest
 
 PYTHON = """
     #!/usr/bin/env python3
@@ -95,3 +95,50 @@ def test_a_handle_of_an_unknown_namespace(tmp_path, name, expected):
     """It may be any: a parameter that some namespace has may be meant."""
     read = f'std::string ns; nh.getParam("ns", ns); ros::NodeHandle nh(ns); nh.getParam("{name}", value);'
     assert find_topic(tmp_path, "p/src/a.cpp", CPP.format(handle="", read=read), IN_GROUP) == expected
+
+
+def test_a_node_handle_that_a_header_declares_in_a_namespace():
+    """Its type is that of the only variable of that name; of two types it is not known."""
+    header = """
+        #include <ros/ros.h>
+        namespace gps { boost::shared_ptr<ros::NodeHandle> nh; class Node { public: Node(); }; }
+        %s
+    """
+    source = """
+        #include "gps.h"
+        using namespace gps;
+        Node::Node() { nh->param("rate", rate["all"], 5); }
+        int main(int c, char** v) {
+          ros::init(c, v, "gps");
+          nh.reset(new ros::NodeHandle("~"));
+          Node node;
+        }
+    """
+    found = graph({"gps/gps.h": header % "", "gps/gps.cpp": source}, 1)
+    assert [(one.node, one.name, one.default) for one in found.parameters] == [("gps/gps", "rate", "5")]
+    unsure = graph({"gps/gps.h": header % "namespace other { Reader nh; }", "gps/gps.cpp": source}, 1)
+    assert not unsure.parameters
+
+
+def test_a_helper_of_another_package_that_is_given_the_node_handle():
+    source = """
+        #include <ros/ros.h>
+        #include <rig_common/params.h>
+        int main(int c, char** v) {
+          ros::init(c, v, "rig");
+          ros::NodeHandle nh("~"), arm(nh, "arm");
+          double speed = getParam(nh, "speed", 1.5);
+          double reach = getParam(arm, "reach", 0.5);
+          double other = getParam(c, "other", 0.5);
+          double own = param(nh, "own");
+        }
+    """
+    helper = "double param(ros::NodeHandle& nh, const std::string& name) { return nh.param(name + '_x', 1.0); }"
+    same = helper.replace(" + '_x'", "").replace("double param", "double getParam")
+    found = graph({"rig/rig.cpp": source, "rig/same.h": same}, 1)
+    assert {(one.name, one.path) for one in found.parameters} >= {("speed", "rig/rig.cpp"), ("reach", "rig/rig.cpp")}
+    found = graph({"rig/rig.cpp": '#include "own.h"' + source, "rig/own.h": helper.replace("'", '"')}, 1)
+    assert {(one.name, one.default, one.line) for one in found.parameters if one.path == "rig/rig.cpp"} == {
+        ("speed", "1.5", 7), ("reach", "0.5", 8)
+    }  # fmt: skip
+    assert [(one.name, one.path) for one in found.parameters if one.path != "rig/rig.cpp"] == [("own_x", "rig/own.h")]

@@ -499,3 +499,127 @@ def test_all_nodes_of_a_program_have_the_name_that_a_launch_file_gives(tmp_path)
     found = graph_on_disk(tmp_path / "given", files)
     assert {node for node, _, _ in ends(found, "publisher")} == {"/one"}
     assert {topic for _, topic, _ in ends(found, "publisher")} == {"/one/out"}
+
+
+def test_a_node_that_has_nothing_but_a_timer_is_in_the_graph():
+    files = {
+        "car/beat.py": """
+            import rclpy
+            from rclpy.node import Node
+            class Beat(Node):
+                def __init__(self):
+                    super().__init__('beat')
+                    self.create_timer(0.5, self.tick)
+                def tick(self): pass
+            def main():
+                rclpy.spin(Beat())
+        """,
+        "car/idle.py": """
+            import rclpy
+            from rclpy.node import Node
+            def main():
+                rclpy.spin(Node('idle'))
+        """,
+    }
+    found = graph(files)
+    assert [(node.id, node.name) for node in found.nodes] == [("car/beat.py", "/beat")]
+    assert [(timer.node, timer.period) for timer in found.timers] == [("car/beat.py", "0.5")]
+
+
+HORN = """
+    import rospy
+    from std_msgs.msg import String
+    from %s import TOPIC
+    if __name__ == "__main__":
+        rospy.init_node("%s")
+        rospy.Publisher(TOPIC, String, queue_size=1)
+"""
+
+
+def test_programs_outside_of_packages_run_by_hand(tmp_path):
+    files = {
+        "src/car/package.xml": manifest("car", "catkin"),
+        "src/car/CMakeLists.txt": "project(car)\ncatkin_install_python(PROGRAMS horn.py DESTINATION here)",
+        "src/car/horn.py": HORN % ("car_names", "horn"),
+        "src/car/car_names.py": "import rospy\nTOPIC = '/car'",
+        # Outside of all packages: a program with what it imports, one that is no program, and one without ROS.
+        "tools/by_hand.py": HORN % ("names", "by_hand"),
+        "tools/names.py": "import rospy\nTOPIC = '/hand'",
+        "tools/car_names.py": "import rospy\nTOPIC = '/wrong'",
+        "tools/plot.py": "class Publisher: pass\nif __name__ == '__main__': Publisher('/plot', 1)",
+        "tools/test_horn.py": HORN % ("names", "tested"),
+        "tools/.old/horn.py": HORN % ("names", "old"),
+        "tools/build.cpp": """
+            int main() { ros::NodeHandle n; n.advertise<std_msgs::Empty>("x", 1); }
+        """,
+    }
+    found = graph_on_disk(tmp_path, files)
+    assert ends(found, "publisher") == {
+        ("car/horn.py", "/car", "std_msgs/String"), ("tools/by_hand.py", "/hand", "std_msgs/String")
+    }  # fmt: skip
+    assert [(node.id, node.package, node.kind) for node in found.nodes if node.name == "/by_hand"] == [
+        ("tools/by_hand.py", "", "script")
+    ]
+
+
+def test_programs_of_what_is_ignored_are_not_run_by_hand(tmp_path):
+    files = {
+        "car/package.xml": manifest("car", "catkin"), "car/horn.py": HORN % ("os", "horn"),
+        "twin/package.xml": manifest("car", "catkin"), "twin/COLCON_IGNORE": "",
+        "twin/horn.py": HORN.replace("TOPIC,", "'/twin',") % ("os", "twin"),
+    }  # fmt: skip
+    assert {node.name for node in graph_on_disk(tmp_path, files).nodes} == {"/horn"}
+
+
+def test_what_a_started_program_is_built_of_is_its_own_where_nothing_is_seen_to_call_it(tmp_path):
+    """The class of a method is not known here, so nothing leads to it."""
+    files = {
+        "car/package.xml": manifest("car", "ament_cmake"),
+        "car/CMakeLists.txt": """
+            project(car)
+            find_package(ament_cmake REQUIRED)
+            add_executable(lidar main.cpp driver.cpp)
+            add_executable(other other.cpp)
+            install(TARGETS lidar other DESTINATION lib/car)
+            ament_package()
+        """,
+        "car/main.cpp": """
+            #include "gone/driver.h"
+            int main(int c, char** v) { rclcpp::init(c, v); Driver driver("lidar"); driver.open(); }
+        """,
+        "car/driver.cpp": """
+            #include "gone/driver.h"
+            bool Driver::open() {
+              this->declare_parameter<int>("port", 2368);
+              out_ = this->create_publisher<sensor_msgs::msg::PointCloud2>("points", 1);
+              return true;
+            }
+        """,
+        "car/other.cpp": 'int main(int c, char** v) { rclcpp::init(c, v); rclcpp::Node node("other"); }',
+        "car/launch/all.launch.py": """
+            from launch import LaunchDescription
+            from launch_ros.actions import Node
+            def generate_launch_description():
+                return LaunchDescription([
+                    Node(package="car", executable="lidar", name="left"),
+                    Node(package="car", executable="other", name="right"),
+                ])
+        """,
+    }
+    found = graph_on_disk(tmp_path, files)
+    assert [(one.node, one.topic, one.only_if) for one in found.endpoints if not one.implied] == [
+        ("/left", "/points", "something calls `Driver::open`")
+    ]
+    assert [(one.node, one.name) for one in found.parameters] == [("/left", "port")]
+
+
+def test_a_package_that_is_left_out_for_its_name_is_named(tmp_path):
+    files = {
+        "car/package.xml": manifest("car", "catkin"), "car/horn.py": HORN % ("os", "horn"),
+        "old/car/package.xml": manifest("car", "catkin"), "old/car/horn.py": HORN % ("os", "old_horn"),
+    }  # fmt: skip
+    found = graph_on_disk(tmp_path, files)
+    (read,) = (node.path.rpartition("/")[0] for node in found.nodes)
+    named = [(one.path, one.written, one.reason) for one in found.coverage.unresolved if one.what == "package"]
+    (left_out,) = {"car", "old/car"} - {read}
+    assert named == [(f"{left_out}/package.xml", "car", f"another package of this name is read, in `{read}`")]

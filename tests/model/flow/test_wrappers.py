@@ -112,3 +112,27 @@ def test_point_clouds_of_pcl():
     assert ends(graph({"p/hub.cpp": main}, 1), "publisher") == {
         ("p/hub", "/a", CLOUD), ("p/hub", "/b", CLOUD), ("p/hub", "/d", "std_msgs/Header"),
     }  # fmt: skip
+
+
+def test_a_helper_of_the_workspace_that_hands_on_the_name_beside_a_node():
+    """Its callers declare; what it does itself is none of its own."""
+    helper = """
+        namespace nav2_util {
+        template <typename NodeT>
+        void declare_parameter_if_not_declared(NodeT node, const std::string& name, const ParameterValue& value) {
+          if (!node->has_parameter(name)) { node->declare_parameter(name, value); }
+        }
+        }
+    """
+    code = """
+        #include "util.hpp"
+        class Dock : public rclcpp::Node {
+         public:
+          Dock() : Node("dock") {
+            nav2_util::declare_parameter_if_not_declared(this, "speed", rclcpp::ParameterValue(1.0));
+          }
+        };
+        int main(int c, char** v) { rclcpp::init(c, v); rclcpp::spin(std::make_shared<Dock>()); }
+    """
+    found = graph({"deck/util.hpp": helper, "deck/dock.cpp": code})
+    assert [(one.path, one.name) for one in found.parameters] == [("deck/dock.cpp", "speed")]

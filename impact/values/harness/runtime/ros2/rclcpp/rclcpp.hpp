@@ -668,7 +668,7 @@ template <class... A> std::vector<std::string> remove_ros_arguments(A &&...) { r
 template <class... A> bool install_signal_handlers(A &&...) { return true; }
 template <class... A> bool ok(A &&...) {
   static int rounds = 0;
-  if (ri::phase) return ri_boolean("~ok") != 0;
+  if (ri::phase && !ri::is_main) return ri_boolean("~ok") != 0;
   return ++rounds < 3;
 }
 template <class... A> bool shutdown(A &&...) { ri::effect("shutdown", "rclcpp"); return true; }

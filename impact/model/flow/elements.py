@@ -1,0 +1,332 @@
+"""What the elements of lists and dictionaries are, where code writes them out: of literals, of what loops walk through,
+and of what is looked up by a place or a key."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from ...facts.flow import Assignment, FlowCall, FlowExpr
+from .code import FlowCode, Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number
+from .reaching import LOOPS
+
+_DEEPEST = 8
+_MOST = 200
+# Expressions looked at for one list.
+_MOST_STEPS = 400
+_PUT = frozenset(("push_back", "emplace_back", "append"))
+# Calls that change what a list or dictionary holds in ways that are not followed.
+_CHANGES = frozenset(
+    ("insert", "emplace", "extend", "update", "clear", "pop", "remove", "erase", "setdefault", "add", "pop_back",
+     "swap", "resize", "assign", "sort", "reverse", "popitem", "push_front", "emplace_front", "insert_or_assign",
+     "try_emplace")
+)  # fmt: skip
+# Classes of C++ whose braces hold the elements themselves.
+_LISTS = frozenset(("vector", "array", "list", "set", "initializer_list", "deque", "unordered_set"))
+_MAPS = frozenset(("map", "unordered_map"))
+# Functions of Python that give the elements of their only argument.
+_COPIES = frozenset(("list", "tuple", "set", "sorted", "reversed", "iter", "frozenset", "dict"))
+_OF_DICTIONARIES = {"keys": 0, "values": 1}
+# In a pair of C++.
+_MEMBERS = {"first": 0, "second": 1}
+
+_COUNTS = re.compile(r"(\w+) (<=?) (\d{1,4})")
+
+
+class ListElement(NamedTuple):
+    """An expression where it stands."""
+
+    value: FlowExpr
+    fn: Fn
+    line: int
+
+
+class HeldList(NamedTuple):
+    """What a list or dictionary is written to hold. whole: whether it is that alone, in this order."""
+
+    elements: tuple[ListElement, ...]
+    whole: bool = True
+
+
+class Elements:
+    """The elements of the lists and dictionaries of a body of code. runs: which functions run; way: the only call
+    through which a function is reached; made: by constructor who gives it its arguments, where that is told."""
+
+    def __init__(
+        self, code: FlowCode, runs: Callable[[Fn], bool] = lambda fn: True, way: Mapping[Fn, FlowCall] | None = None,
+        made: Mapping[Fn, Sequence[Made]] | None = None,
+    ):  # fmt: skip
+        self.code, self._runs, self._way, self._made = code, runs, way or {}, made or {}
+        self._left = 0
+
+    def list_walked(self, container: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
+        """What a loop over a list or dictionary goes through: a pair for each key of a dictionary. None where that is
+        not written out."""
+        held = self._find_held(container, fn, line)
+        return _join_held(held) if held else None
+
+    def select(self, container: FlowExpr, key: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
+        """What stands at a place, or at a key, that is a literal. None where that is not written out."""
+        held = self._find_held(container, fn, line)
+        if not held or not all(one.whole for one in held):
+            return None
+        found: list[ListElement] = []
+        for one in held:
+            chosen = _select_one(one, key)
+            if chosen is None:
+                return None
+            found.append(chosen)
+        return found
+
+    def list_counted(self, path: str, fn: Fn, line: int) -> list[ListElement]:
+        """The numbers that a variable of a loop `for (int i = 0; i < 4; ++i)` is in its turns; none for all else."""
+        around = {place for guard in fn.collect_guards(line) for place in fn.list_guards_around(guard)}
+        asked = (fn.facts.guards[place] for place in around if fn.facts.guards[place].kind not in LOOPS)
+        if any(path in re.findall(r"\w+", guard.text) for guard in asked):
+            return []  # not in all turns
+        for each in fn.assigned.get(path, ()) if fn.source.facts.language == "cpp" else ():
+            if each.operator != "=" or each.value.kind != "number" or not is_number(each.value.text):
+                continue
+            for place in around:
+                guard = fn.facts.guards[place]
+                limit = _COUNTS.fullmatch(guard.text)
+                same = [one for one in fn.assigned[path] if one.guard == place]
+                steps = [one.value.text for one in same if one.operator == "+="]
+                if guard.kind == "while" and guard.line == each.line and limit and limit[1] == path and steps == ["1"]:
+                    last = int(limit[3]) + (limit[2] == "<=")
+                    return _list_numbers(range(int(each.value.text), last), fn, line) if len(same) == 1 else []
+        return []
+
+    def find_pair(self, path: str, fn: Fn, line: int) -> list[ListElement] | None:
+        """What `entry.first` and `entry.second` are, where a loop walks through pairs. None for all else."""
+        head, _, last = path.rpartition(".")
+        place = _MEMBERS.get(last)
+        if place is None or not head or fn.source.facts.language != "cpp":
+            return None
+        held = self._find_held(FlowExpr("name", head), fn, line)
+        if not held or not all(one.whole and len(one.elements) == 2 for one in held):
+            return None
+        return [one.elements[place] for one in held]
+
+    def _find_held(self, value: FlowExpr, fn: Fn, line: int) -> list[HeldList] | None:
+        self._left = _MOST_STEPS
+        return self._list_held(value, fn, line, 0)
+
+    def _list_held(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[HeldList] | None:
+        """The lists that an expression may be, None where one of them is not written out."""
+        self._left -= 1
+        if depth > _DEEPEST or self._left < 0:
+            return None
+        if value.kind == "list":
+            return [HeldList(tuple(ListElement(part, fn, line) for part in value.parts))]
+        if value.kind == "make":
+            return self._list_made(value, fn, line, depth)
+        if value.kind == "name":
+            return self._list_named(value.text, fn, line, depth)
+        if value.kind == "index" and len(value.parts) == 2:
+            return self._list_inner(value, fn, line, depth)
+        if value.kind == "call":
+            return self._list_called(value, fn, line, depth)
+        if value.kind == "join" and value.text == "+":
+            return self._list_joined(value, fn, line, depth)
+        if value.kind == "other" and len(value.parts) == 1 and value.text[:1] in ("[", "("):
+            # `[... for each in ...]`
+            return [HeldList((ListElement(value.parts[0], fn, line),), False)]
+        return None
+
+    def _list_made(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[HeldList] | None:
+        name = get_tail(value.text.partition("<")[0])
+        if fn.source.facts.language != "cpp" or name not in _LISTS | _MAPS:
+            return None
+        if len(value.parts) == 1 and value.parts[0].kind == "list" and name in _LISTS:
+            return self._list_held(value.parts[0], fn, line, depth + 1)
+        # `std::vector<std::string>(3, "x")` holds no list of these.
+        if not value.parts or any(part.kind not in ("text", "list") for part in value.parts):
+            return None
+        return [HeldList(tuple(ListElement(part, fn, line) for part in value.parts))]
+
+    def _list_inner(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[HeldList] | None:
+        """The lists that are elements of a list."""
+        container, key = value.parts
+        held = self._list_held(container, fn, line, depth + 1)
+        if not held:
+            return None
+        if key.kind == "other" and not key.text:
+            inner = _join_held(held)
+        else:
+            chosen = [_select_one(one, key) if one.whole else None for one in held]
+            inner = [one for one in chosen if one is not None]
+            if len(inner) < len(chosen):
+                return None
+        return self._join_lists(inner, depth)
+
+    def _join_lists(self, elements: Iterable[ListElement], depth: int) -> list[HeldList] | None:
+        found: list[HeldList] = []
+        for one in elements:
+            lists = self._list_held(one.value, one.fn, one.line, depth + 1)
+            if lists is None or len(found) > _MOST:
+                return None
+            found += lists
+        return found
+
+    def _list_called(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[HeldList] | None:
+        head, _, last = value.text.rpartition(".")
+        python = fn.source.facts.language == "python"
+        if python and head and not value.parts and last in ("items", "copy", *_OF_DICTIONARIES):
+            held = self._list_held(value.receiver or FlowExpr("name", head), fn, line, depth + 1)
+            return _select_column(held, _OF_DICTIONARIES[last]) if held and last in _OF_DICTIONARIES else held
+        if python and not head and value.text == "range":
+            return _make_range(value, fn, line)
+        if python and not head and value.text in _COPIES and len(value.parts) == 1:
+            return self._list_held(value.parts[0], fn, line, depth + 1)
+        targets = self.code.list_targets(value.text, fn)
+        returned = [(each, one) for one in targets for each in one.facts.assignments if each.operator == "return"]
+        if len(returned) == 1:
+            return self._list_held(returned[0][0].value, returned[0][1], returned[0][0].line, depth + 1)
+        return None
+
+    def _list_joined(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[HeldList] | None:
+        """`[...] + [...]`."""
+        parts = [self._list_held(part, fn, line, depth + 1) for part in value.parts]
+        known = [part[0] for part in parts if part is not None and len(part) == 1]
+        if len(known) < len(parts):
+            return None
+        return [HeldList(tuple(one for part in known for one in part.elements), all(part.whole for part in known))]
+
+    def _list_named(self, path: str, fn: Fn, line: int, depth: int) -> list[HeldList] | None:
+        variable = self.code.identify(path, fn)
+        found: list[HeldList] = []
+        further: list[ListElement] = []
+        written = self.code.list_writes(variable)
+        if variable.kind == "member":
+            # What another program writes into its own object, unless nothing that runs writes it.
+            written = [row for row in written if self._runs(row[0])] or written
+        for writer, each in _select_reaching(written, variable, fn, line):
+            if each.key is not None:
+                further.append(ListElement(FlowExpr("list", "", (each.key, each.value)), writer, each.line))
+                continue
+            if each.operator not in ("=", "for") or "[" in each.target:
+                return None
+            if each.value.kind == "make" and not each.value.parts:
+                continue
+            inner = self._list_held(each.value, writer, each.line, depth + 1)
+            if inner is None:
+                return None
+            found += inner
+        for one in self._list_first(variable, fn) if not written else ():
+            inner = self._list_held(one.value, one.fn, one.line, depth + 1)
+            if inner is None:
+                return None
+            found += inner
+        for one in self._list_given(variable, fn) if not found else ():
+            inner = self._list_held(one.value, one.fn, one.line, depth + 1)
+            if inner is None:
+                return None
+            found += inner
+        return self._add_put(found, further, path, fn)
+
+    def _add_put(self, found: list[HeldList], further: list[ListElement], path: str, fn: Fn) -> list[HeldList] | None:
+        """Lists with what is put into them afterwards; None where that is not followed."""
+        for call in fn.facts.calls:
+            head, _, last = call.callee.rpartition(".")
+            if head == path and last in _PUT and len(call.arguments) == 1:
+                further.append(ListElement(call.arguments[0], fn, call.line))
+            elif head == path and last in _CHANGES:
+                return None
+        if not further:
+            return found
+        held = [one for one in found if one.elements]
+        return [*held, HeldList(tuple(further), False)] if len(held) < 2 else None
+
+    def _list_first(self, variable: Variable, fn: Fn) -> Iterator[ListElement]:
+        """What a member or a constant is declared with."""
+        if variable.kind == "member":
+            for cls in self.code.list_class_bodies(variable.owner):
+                holder = next(iter(self.code.list_functions(cls)), fn)
+                for member in cls.facts.members:
+                    if member.name == variable.name and member.value is not None:
+                        yield ListElement(member.value, holder, member.line)
+        elif variable.kind == "global":
+            for constant, source in self.code.list_constants(variable, fn):
+                if constant.value is not None:
+                    yield ListElement(constant.value, self.code.find_first(source, fn), constant.line)
+
+    def _list_given(self, variable: Variable, fn: Fn) -> Iterator[ListElement]:
+        """What callers that run give for a parameter of a function, and its default where one of them gives nothing."""
+        place = find_parameter(fn, variable.name) if variable.kind == "local" else None
+        if place is None:
+            return
+        only = self._way.get(fn)
+        called = (
+            (caller, call.arguments, call.line)
+            for caller, call in self.code.callers.get(fn, ())
+            if only is None or call is only
+        )
+        default = self.code.find_default(fn, *place)
+        for giver, arguments, line in self._made.get(fn) or (*called, *self.code.list_constructed(fn)):
+            given = find_argument(arguments, place[0], variable.name) if self._runs(giver) else None
+            if given is not None:
+                yield ListElement(given, giver, line)
+            elif default is not None and self._runs(giver):
+                yield ListElement(default, fn, fn.facts.line)
+
+
+def _select_reaching(
+    written: Sequence[tuple[Fn, Assignment]], variable: Variable, fn: Fn, line: int
+) -> Sequence[tuple[Fn, Assignment]]:
+    """Of assignments to a variable those that may hold on a line of a function: where it is a local one, none that is
+    surely replaced before, and none that comes after."""
+    if variable.kind != "local" or any(writer is not fn for writer, _ in written):
+        return written
+    guards = {place for guard in fn.collect_guards(line) for place in fn.list_guards_around(guard)}
+    before = [each for _, each in written if each.line <= line]
+    sure = [
+        each.line for each in before
+        if each.key is None and each.operator in ("=", "for") and (each.guard < 0 or each.guard in guards)
+    ]  # fmt: skip
+    return [(fn, each) for each in before if each.line >= max(sure, default=0)]
+
+
+def _join_held(held: Iterable[HeldList]) -> list[ListElement]:
+    return list(dict.fromkeys(element for one in held for element in one.elements))
+
+
+def _select_column(held: Iterable[HeldList], place: int) -> list[HeldList] | None:
+    """Of dictionaries, as pairs, the keys or the values."""
+    found: list[HeldList] = []
+    for one in held:
+        if any(element.value.kind != "list" or len(element.value.parts) != 2 for element in one.elements):
+            return None
+        column = (element._replace(value=element.value.parts[place]) for element in one.elements)
+        found.append(HeldList(tuple(column), one.whole))
+    return found
+
+
+def _select_one(held: HeldList, key: FlowExpr) -> ListElement | None:
+    """What stands at a literal place or key; None where that is not one thing."""
+    pairs = [one for one in held.elements if one.value.kind == "list" and len(one.value.parts) == 2]
+    if key.kind == "number" and is_number(key.text.removeprefix("-")):
+        place, count = int(key.text), len(held.elements)
+        # What looks like the rows of a list may be a dictionary of numbers.
+        if any(one.value.parts[0].kind == "number" for one in pairs) or not -count <= place < count:
+            return None
+        return held.elements[place]
+    if key.kind == "text" and len(pairs) == len(held.elements):
+        found = [one for one in pairs if one.value.parts[0] == key]
+        if len(found) == 1:
+            return found[0]._replace(value=found[0].value.parts[1])
+    return None
+
+
+def _make_range(value: FlowExpr, fn: Fn, line: int) -> list[HeldList] | None:
+    """The numbers that `range` counts, where its limits are written."""
+    if not 0 < len(value.parts) < 3 or any(part.kind != "number" or not is_number(part.text) for part in value.parts):
+        return None
+    found = _list_numbers(range(*(int(part.text) for part in value.parts)), fn, line)
+    return [HeldList(tuple(found))] if found else None
+
+
+def _list_numbers(numbers: range, fn: Fn, line: int) -> list[ListElement]:
+    """Numbers as they would be written; none where they are many."""
+    return [ListElement(FlowExpr("number", str(each)), fn, line) for each in numbers if len(numbers) <= _MOST]

@@ -1,0 +1,103 @@
+"""What a search of the text finds of calls of the frameworks, beside what was understood of the code.
+
+Reading code by its structure fails in silence where a call has a form that nothing knows: a search of the text tells
+how much that is, package by package, and where.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator
+from functools import cache
+
+from msgspec.structs import replace
+
+from .code import Fn, get_tail
+from .frameworks import load_frameworks
+from .graph import Graph, PackageCoverage, Unresolved
+from .join import Join
+
+# Names that little else has; what is called `add_*` or `create_*` is asked for by the names in the table alone.
+_STEMS = ("advertise", "create_", "subscribe", "declare_parameter", "add_")
+_ROLES = frozenset(
+    ("publisher", "subscriber", "server", "client", "action server", "action client", "parameter", "timer")
+)
+_CPP = re.compile(r"//[^\n]*|/\*.*?\*/|\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\\\n]|\\.)'", re.DOTALL)
+_PYTHON = re.compile(r"#[^\n]*|\"\"\".*?\"\"\"|'''.*?'''|\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\\\n]|\\.)*'", re.DOTALL)
+# What stands before the name of a function that is declared or defined: a type, or `def`.
+_DECLARES = re.compile(r"(?:\bdef|[\w>*&])\s+(?:[\w:]+::)?$")
+_RETURNS = re.compile(r"\b(?:return|else|co_return|case|throw|await|in|and|or|not)\s+(?:[\w:]+::)?$")
+_MACRO = re.compile(r"[ \t]*#")
+
+
+def add_text_coverage(graph: Graph, code: Join, read: Callable[[str], bytes]) -> Graph:
+    """A graph of code with what a search of its text finds. read: the content of a file."""
+    known = _list_known(code, graph)
+    functions: dict[str, list[Fn]] = {}
+    for fn in code.code.functions:
+        functions.setdefault(fn.source.path, []).append(fn)
+    counts: dict[str, list[int]] = {}
+    missed: list[Unresolved] = []
+    for source in code.code.sources:
+        path = source.path
+        try:
+            text = read(path).decode("utf-8", "replace")
+        except (OSError, KeyError):
+            continue
+        hits = list(_search(text, source.facts.language))
+        own = _list_own(code, functions.get(path, ()), {name for _, name in hits}) if hits else set()
+        for line, name in hits:
+            if (line, name) in own:
+                continue
+            count = counts.setdefault(source.package, [0, 0])
+            count[0] += 1
+            if (path, line) in known:
+                count[1] += 1
+            else:
+                reason = "it looks like a call of a framework, and is not known to be one"
+                missed.append(Unresolved("call", reason, path, line, name))
+    packages = tuple(PackageCoverage(package, *count) for package, count in sorted(counts.items()))
+    return replace(graph, coverage=replace(graph.coverage, by_text=packages, missed=tuple(missed)))
+
+
+@cache
+def _compile_search() -> re.Pattern[str]:
+    calls = load_frameworks().calls
+    names = {name for name, rows in calls.items() if name.startswith(_STEMS) and any(row.does in _ROLES for row in rows)}
+    listed = "|".join(sorted(map(re.escape, names), key=lambda name: (-len(name), name)))
+    return re.compile(rf"(?<![\w~])({listed})\s*(?:<[^;{{}}()]*>\s*)?\(|\b(Subscriber)\s*<[^;{{}}()]*>\s*\w*\s*[({{]")
+
+
+def _search(text: str, language: str) -> Iterator[tuple[int, str]]:
+    """Lines on which a text calls what is named like a framework's function, each with that name."""
+    pattern = _compile_search()
+    if pattern.search(text) is None:
+        return
+    blank = (_CPP if language == "cpp" else _PYTHON).sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
+    for match in pattern.finditer(blank):
+        start = blank.rfind("\n", 0, match.start()) + 1
+        before = blank[start : match.start()]
+        if _MACRO.match(before) or (_DECLARES.search(before) and not _RETURNS.search(before)):
+            continue
+        yield blank.count("\n", 0, match.start()) + 1, match[1] or match[2]
+
+
+def _list_known(code: Join, graph: Graph) -> set[tuple[str, int]]:
+    """The lines of what is in a graph, and of calls that are understood as no part of it."""
+    rows = (*graph.endpoints, *graph.timers, *graph.parameters, *graph.coverage.unresolved, *graph.coverage.wrappers)
+    found = {(row.path, row.line) for row in rows}
+    found.update((use.fn.source.path, use.call.line) for use in code.calls.uses)
+    return found
+
+
+def _list_own(code: Join, functions: Iterable[Fn], names: set[str]) -> set[tuple[int, str]]:
+    """Where functions of the code have some names, or call such functions of the code: by line and name."""
+    found: set[tuple[int, str]] = set()
+    for fn in functions:
+        if get_tail(fn.name) in names:
+            found.update((line, get_tail(fn.name)) for line in range(fn.facts.line - 2, fn.facts.line + 1))
+        for call in fn.facts.calls:
+            name = get_tail(call.callee)
+            if name in names and code.code.list_targets(call.callee, fn):
+                found.add((call.line, name))
+    return found

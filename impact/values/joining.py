@@ -1,0 +1,104 @@
+"""All callbacks of a workspace and what publishes to them, explored and joined."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from typing import NamedTuple
+
+from ...edges.memory import cache_in_derived
+from ...edges.processes import count_cores
+from ..model.flow.graph import Graph
+from ..model.flow.workspace import get_flow
+from ..model.workspace import Workspace
+from .answers import CallbackAnswer
+from .disk import open_sources
+from .matching import UNIT, Mismatch, Sender, list_mismatches
+from .outcomes import Bounds
+from .survey import KINDS, Asked, Progress, Survey, get_key
+from .units import UnitMismatch, list_unit_mismatches
+
+CHECK_BOUNDS = Bounds(text=16, seconds=10.0)
+"""How far checks go: names of frames fit in."""
+
+
+class Joined(NamedTuple):
+    """What was explored besides some callbacks for what it publishes, and what does not fit together."""
+
+    others: tuple[CallbackAnswer, ...]
+    mismatches: tuple[Mismatch, ...]
+
+
+def join_publishers(
+    survey: Survey, callbacks: Sequence[CallbackAnswer], jobs: int = 1, progress: Progress | None = None
+) -> Joined:
+    """Explores who publishes what some callbacks receive, and holds both against each other."""
+    received = {topic for one in callbacks for topic in one.topics}
+    if not received:
+        return Joined((), ())
+    known = {get_key(one) for one in callbacks}
+    graph = survey.graph
+    others: list[CallbackAnswer] = []
+    topics = received
+    # Who publishes what they receive, and who publishes what those receive.
+    for _ in range(2):
+        places = list_starting_places(survey, graph, topics) - {(one.path, one.line) for one in others}
+        if not places:
+            break
+        found = survey.explore(Asked(kinds=KINDS, places=places), jobs=jobs, progress=progress)
+        fresh = [one for one in found.callbacks if get_key(one) not in known]
+        known.update(get_key(one) for one in fresh)
+        others += fresh
+        topics = {topic for one in fresh for topic in one.topics} - topics
+        if not topics:
+            break
+    mismatches = list_mismatches([*callbacks, *others], graph, survey, survey.workspace.ros, jobs)
+    asked = {get_key(one) for one in callbacks}
+    kept = [one for one in mismatches if one.subscriber is not None and get_key(one.subscriber) in asked]
+    return Joined(tuple(others), tuple(kept))
+
+
+def describe_units(
+    workspace: Workspace, graph: Graph, callbacks: Sequence[CallbackAnswer] = ()
+) -> list[Mismatch]:  # fmt: skip
+    """All mismatches of units, as those of values are described. callbacks: those that were explored."""
+    return [_describe_unit(one, callbacks) for one in list_unit_mismatches(workspace, graph)]
+
+
+def _describe_unit(one: UnitMismatch, callbacks: Sequence[CallbackAnswer]) -> Mismatch:
+    sender = Sender(one.written.function, (one.written.place,), {}, one.type)
+    subscriber = None
+    if one.read is not None:
+        named = [each for each in callbacks if each.callback == one.read.function and one.topic in each.topics]
+        subscriber = named[0] if named else CallbackAnswer(
+            one.read.function, "subscriber", "", one.read.place.path, one.read.place.line, one.type, (one.topic,), (),
+            Bounds(),
+        )  # fmt: skip
+    return Mismatch(
+        UNIT, "warning", one.topic, one.type, one.written.field, one.written.unit, sender, subscriber,
+        place=one.read.place if one.read is not None else None, why=one.expected,
+    )  # fmt: skip
+
+
+@cache_in_derived
+def find_unit_mismatches(workspace: Workspace) -> tuple[Mismatch, ...]:
+    """All mismatches of units of a workspace, for checks; nothing is explored for them."""
+    return tuple(describe_units(workspace, get_flow(workspace).system))
+
+
+@cache_in_derived
+def find_mismatches(workspace: Workspace) -> tuple[Mismatch, ...]:
+    """All mismatches of a workspace, for checks. They are looked for once, on all cores."""
+    graph = get_flow(workspace).system
+    jobs = count_cores()
+    with open_sources(workspace.extraction.tree) as root, Survey(root, workspace, graph, CHECK_BOUNDS) as survey:
+        report = survey.explore(Asked(), jobs=jobs)
+        return join_publishers(survey, report.callbacks, jobs).mismatches
+
+
+def list_starting_places(survey: Survey, graph: Graph, topics: Collection[str]) -> frozenset[tuple[str, int]]:
+    """Places of what makes the statements run that publish on some topics: of subscriptions, timers, services, and of
+    the programs themselves."""
+    statements = [one for one in graph.publishes if one.topic in topics]
+    places = {(way.trigger.path, way.trigger.line) for one in statements for way in one.by}
+    untold = {one.path for one in statements if not one.by}
+    return frozenset(places) | (survey.list_places(untold) if untold else frozenset())
