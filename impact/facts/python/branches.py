@@ -77,10 +77,10 @@ def _find_machine_names(tree: ast.Module | ast.FunctionDef, scope: ast.Module | 
             target = statement.targets[0]
             if isinstance(target, ast.Name):
                 found.setdefault(target.id, []).append(statement.value)
-    return {name: values[0] for name, values in found.items() if len(values) == 1 and reads_distro(values[0])}
+    return {name: values[0] for name, values in found.items() if len(values) == 1 and is_distro_read(values[0])}
 
 
-def reads_distro(node: ast.expr) -> bool:
+def is_distro_read(node: ast.expr) -> bool:
     """Whether an expression is the variable of the environment that names the distro."""
     if isinstance(node, ast.Subscript):
         key = node.slice
@@ -200,15 +200,18 @@ def list_distro_files(tree: ast.Module) -> Iterator[Reference]:
         isinstance(node, ast.Attribute) and node.attr in _ASKING for node in ast.walk(tree)
     ):
         return
-    seen: set[int] = set()
-    for node in ast.walk(tree):
-        if not isinstance(node, ast.expr) or node.lineno in seen:
+    waiting: list[ast.AST] = [tree]
+    while waiting:
+        node = waiting.pop()
+        text = _read_path(node, machine) if isinstance(node, ast.expr) else ""
+        if DISTRO not in text or not isinstance(node, ast.expr):
+            waiting.extend(ast.iter_child_nodes(node))
             continue
-        text = _read_path(node, machine)
-        name = text.rpartition("\0")[2].lstrip("/")
-        if DISTRO in name and "." in name.rpartition("/")[2] and not name.endswith(DISTRO):
-            seen.add(node.lineno)
-            yield Reference("distro file", "", name, node.lineno, node.col_offset + 1)
+        _, unknown, name = text.rpartition("\0")
+        # What is glued to something unknown is not a whole name.
+        whole = DISTRO in name and (not unknown or name.startswith("/"))
+        if whole and "." in name.rpartition("/")[2] and not name.endswith(DISTRO):
+            yield Reference("distro file", "", name.lstrip("/"), node.lineno, node.col_offset + 1)
 
 
 # What asks whether a file is there.
@@ -221,7 +224,7 @@ def _read_path(node: ast.expr, machine: dict[str, ast.expr], depth: int = 0) -> 
         return "\0"
     if isinstance(node, ast.Constant):
         return node.value if isinstance(node.value, str) else "\0"
-    if (isinstance(node, ast.Name) and node.id in machine) or reads_distro(node):
+    if (isinstance(node, ast.Name) and node.id in machine) or is_distro_read(node):
         return DISTRO
     if isinstance(node, ast.JoinedStr):
         parts = (one.value if isinstance(one, ast.FormattedValue) else one for one in node.values)

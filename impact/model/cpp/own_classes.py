@@ -90,7 +90,7 @@ class OwnClasses:
             return LostOverride("plain", base.name, method.name, method.at, class_.name, shown)
         if all(self._differs(method, class_, one, other) for other, one in same):
             return LostOverride("types", base.name, method.name, method.at, class_.name, shown)
-        equal = [one for _, one in same if _shape(one) == _shape(method)]
+        equal = [one for _, one in same if _make_shape(one) == _make_shape(method)]
         if len(same) == 1 and equal and self._gives_other(method, class_, first, base):
             return LostOverride("result", base.name, method.name, method.at, class_.name, shown)
         return None
@@ -244,7 +244,7 @@ def _is_closed(class_: CppClass) -> bool:
     )
 
 
-def _shape(one: Declaration) -> tuple:
+def _make_shape(one: Declaration) -> tuple:
     return tuple(normalise_parameter(each) for each in one.parameters), "const" in one.traits
 
 
