@@ -73,10 +73,10 @@ def _may_be_used_unseen(view: TargetView, name: str, kinds: Collection[str]) -> 
         return True
     if surface.interfaces or ("build" in kinds and build.headers):
         return False
-    return not surface.python.modules or _extends_others(surface)
+    return not surface.python.modules or _is_extension(surface)
 
 
-def _extends_others(surface: Surface) -> bool:
+def _is_extension(surface: Surface) -> bool:
     """Whether a module of a package has a class that is derived from one of a package which comes along."""
     for module in surface.python.modules:
         taken = {
