@@ -17,8 +17,8 @@ Use instead
     A manifest without it.
 
 Not reported
-    Metapackages; released packages of which it is not known what they offer, that have nothing to include or import
-    (build tools, message runtimes, vendored libraries), or that have programs, plugins or launch files; libraries that
+    Metapackages; released packages of which it is not known what they offer, or that have nothing to include or import
+    (build tools, message runtimes, vendored libraries); packages with programs, plugins or launch files; libraries that
     are asked for at run time alone, and modules that extend another package, since both may be loaded by name;
     dependencies of packages with unresolved CMake.
 """
@@ -60,11 +60,15 @@ def unused_dependency(view: TargetView, package: Package):
 
 
 def _may_be_used_unseen(view: TargetView, name: str, kinds: Collection[str]) -> bool:
-    """Whether a use of a released package need not show in a file: it has programs, plugins or launch files, which
+    """Whether a use of a package need not show in a file: it has programs, plugins or launch files, which
     people and settings start; nothing to include or import; a library that is asked for at run time alone; or modules
     that extend another package, which may load them by name."""
-    if name in view.workspace.packages or name in OF_ENVIRONMENT:
+    if name in OF_ENVIRONMENT:
         return False
+    if (own := view.workspace.packages.get(name)) is not None:
+        linked = own.linked
+        programs = any(target.kind == "executable" for target in own.build.targets) or linked.scripts
+        return "exec" in kinds and bool(programs or linked.plugins or linked.registered)
     offer = view.offers.find_package(name)
     if offer is None:
         return True
