@@ -1270,11 +1270,12 @@ class PackageJoin:
 
     def list_compiled(self, roles) -> Iterator[tuple[str, tuple[str, ...]]]:
         """As LinkedPackage.compiled."""
-        for path, (_, _, targets, _) in roles.items() if self.watched.compiled is not None else ():
+        load = self.watched.compiled
+        for path, (_, _, targets, _) in roles.items() if load is not None else ():
             facts = self.cpp.get(path)
-            if facts is None or not targets:
+            if facts is None or not targets or load is None:
                 continue
-            known = self.watched.compiled()
+            known = load()
             made = {*facts.variables, *facts.made}
             found = {
                 name.text
@@ -1282,6 +1283,7 @@ class PackageJoin:
                 if not name.conditions
                 and (name.text in known.functions or (name.text in known.classes and name.text in made))
             }
+            found.update(_list_alternatives(facts, known))
             if not known.words.isdisjoint(words := facts.words.split(" ")):
                 found.update(known.words.intersection(words).difference(facts.defined))
             if found:
@@ -1874,6 +1876,18 @@ class PackageJoin:
 # Commands that may run tests, besides those that the interpreter knows and those of linters.
 _MAY_TEST = re.compile(r"\A(?!ament_|catkin_add|roslaunch_add|add_(?:launch|ros)).*test")
 _BUILT = re.compile(r"\$\{(?:\w*BINARY_DIR|CATKIN_DEVEL_PREFIX)\}")
+
+
+def _list_alternatives(facts: CppFile, known: CompiledNames) -> Iterator[str]:
+    """Names that need a link and are used in one branch of an #if where another one of the same library, or of the
+    same package, is in the other branch."""
+    used: dict[tuple[str, Condition], str] = {}
+    for name in facts.qualified:
+        if len(name.conditions) == 1 and (name.text in known.functions or name.text in known.classes):
+            used.setdefault((known.find(name.text).owner, name.conditions[0]), name.text)
+    for (owner, condition), name in used.items():
+        if (owner, msgspec.structs.replace(condition, negated=not condition.negated)) in used:
+            yield name
 
 
 def _make_member_use(

@@ -17,13 +17,15 @@ Use instead
     A manifest without it.
 
 Not reported
-    Metapackages; released packages of which it is not known what they offer, that have nothing to include or import
-    (build tools, message runtimes, vendored libraries), or that have programs, plugins or launch files; what is asked
-    for at run time alone, unless it has interfaces; dependencies of packages with unresolved CMake.
+    Metapackages; released packages of which it is not known what they offer, or that have nothing to include or import
+    (build tools, message runtimes, vendored libraries); packages with programs, plugins or launch files; libraries that
+    are asked for at run time alone, and modules that extend another package, since both may be loaded by name;
+    dependencies of packages with unresolved CMake.
 """
 
 from collections.abc import Collection
 
+from ...targets.surface.surface import Surface
 from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 from .used_names import OF_ENVIRONMENT, list_used_names, shows_uses
 
@@ -58,18 +60,35 @@ def unused_dependency(view: TargetView, package: Package):
 
 
 def _may_be_used_unseen(view: TargetView, name: str, kinds: Collection[str]) -> bool:
-    """Whether a use of a released package need not show in a file: it has programs, plugins or launch files, which
-    people and settings start; nothing to include or import; or libraries and modules that are asked for at run time
-    alone, and may be loaded by name."""
-    if name in view.workspace.packages or name in OF_ENVIRONMENT:
+    """Whether a use of a package need not show in a file: it has programs, plugins or launch files, which
+    people and settings start; nothing to include or import; a library that is asked for at run time alone; or modules
+    that extend another package, which may load them by name."""
+    if name in OF_ENVIRONMENT:
         return False
+    if (own := view.workspace.packages.get(name)) is not None:
+        linked = own.linked
+        programs = any(target.kind == "executable" for target in own.build.targets) or linked.scripts
+        return "exec" in kinds and bool(programs or linked.plugins or linked.registered)
     offer = view.offers.find_package(name)
     if offer is None:
         return True
     build, surface = offer.build, offer.history.load_surface(offer.stored)
-    if "exec" in kinds and (build.programs or build.plugins or build.launches):
+    if surface is None or ("exec" in kinds and (build.programs or build.plugins or build.launches)):
         return True
-    interfaces = surface.interfaces if surface is not None else ()
-    modules = surface.python.modules if surface is not None else ()
-    shown = (*interfaces, *((*build.headers, *modules) if "build" in kinds else ()))
-    return not shown
+    if surface.interfaces or ("build" in kinds and build.headers):
+        return False
+    return not surface.python.modules or _is_extension(surface)
+
+
+def _is_extension(surface: Surface) -> bool:
+    """Whether a module of a package has a class that is derived from one of a package which comes along."""
+    for module in surface.python.modules:
+        taken = {
+            one.name
+            for one in module.surface.imports
+            if not one.level and one.module.partition(".")[0] in surface.runs_with
+        }
+        bases = (base.partition(".")[0] for name in module.surface.names for base in name.bases)
+        if not taken.isdisjoint(bases):
+            return True
+    return False
