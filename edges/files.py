@@ -151,6 +151,16 @@ def write_file(path: Path, data: bytes, *, beneath: Path | None = None, instead_
                 _check_unchanged(folder, name, instead_of, target)
 
 
+def write_scratch_file(path: Path, data: bytes) -> None:
+    """Writes a file into a temporary folder of ours, which nobody else writes into and which does not outlive this
+    process: it is not replaced at once, and nothing waits for the disk. Raises OSError."""
+    descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC | os.O_NOFOLLOW, 0o666)
+    try:
+        write_all(descriptor, data)
+    finally:
+        os.close(descriptor)
+
+
 @contextlib.contextmanager
 def open_for_replacing(path: Path) -> Iterator[IO[bytes]]:
     """A file written piece by piece, which takes the place of the old one when the block ends, and goes when it fails.

@@ -168,19 +168,22 @@ def list_mismatches(
 
 
 def _drop_repeats(found: Iterable[Mismatch]) -> list[Mismatch]:
-    """Each once: a statement that several programs or callbacks run says the same, and what is certain comes first."""
+    """Each once: a statement that several programs or callbacks run says the same. What is certain comes first, then
+    what needs no earlier sender."""
     kept: dict[tuple[object, ...], Mismatch] = {}
     for one in found:
-        sender = one.sender
         values = one.values if one.place is None else ""
-        key = (
-            one.kind, one.topic, one.field, values, one.subscriber and get_key(one.subscriber), one.place,
-            sender.places if sender is not None else (), bool(sender and sender.via),
-        )  # fmt: skip
+        reader = get_key(one.subscriber) if one.subscriber is not None else None
+        places = one.sender.places if one.sender is not None else ()
+        key = (one.kind, one.topic, one.field, values, reader, one.place, places)
         known = kept.get(key)
-        if known is None or _SEVERITIES.index(one.severity) > _SEVERITIES.index(known.severity):
+        if known is None or _rank(one) > _rank(known):
             kept[key] = one
     return list(kept.values())
+
+
+def _rank(one: Mismatch) -> tuple[int, bool]:
+    return _SEVERITIES.index(one.severity), not (one.sender is not None and one.sender.via)
 
 
 def _fits(row: Sender, answer: CallbackAnswer) -> bool:
@@ -205,6 +208,7 @@ def _follow_one_hop(
     requests: list[Request] = []
     origins: dict[CallbackKey, list[tuple[str, Sender, SentWay]]] = {}
     by_key = {get_key(one): one for one in answers}
+    heard = {topic for one in answers if one.kind == "subscriber" for topic in one.topics}
     for answer in answers:
         if answer.kind != "subscriber" or not answer.sent:
             continue
@@ -215,7 +219,7 @@ def _follow_one_hop(
             if _fits(row, answer) and row.key != get_key(answer)
             for way in row.ways
         ]
-        if not rows or not _is_followed(answer, senders, publishers):
+        if not rows or not any(heard & _list_common_topics(sent, publishers) for sent in answer.sent):
             continue
         if len(rows) <= _MOST_MESSAGES:
             origins[get_key(answer)] = rows
@@ -238,11 +242,6 @@ def _follow_one_hop(
             if not way.is_assumed:
                 _add_senders(found, answer, sent, publishers, (EarlierSender(row.callback, topic, way.place),))
     return found
-
-
-def _is_followed(answer: CallbackAnswer, senders: Senders, publishers: TopicPublishers) -> bool:
-    """Whether somebody may want to know what a callback passes on."""
-    return any(_list_common_topics(sent, publishers) for sent in answer.sent) and bool(senders)
 
 
 def _add_senders(
@@ -286,7 +285,7 @@ class _Verdicts:
                 continue
             for topic in answer.topics:
                 self._subscribers.setdefault(topic, []).append(answer)
-            if not answer.is_explored:
+            if not _can_fail(answer):
                 continue
             rows = [
                 (way, _make_message(row, way))
@@ -318,6 +317,12 @@ class _Verdicts:
             if Reaction.HANDLED in outcome.reactions:
                 return True
         return False
+
+
+def _can_fail(answer: CallbackAnswer) -> bool:
+    """Whether something else than being handled can follow from a message."""
+    others = (Reaction.CRASH, Reaction.IGNORED, Reaction.LOG_ONLY)
+    return answer.is_explored and any(answer.counts.get(each) for each in others)
 
 
 def _list_crashes(

@@ -22,6 +22,7 @@ from .projection import FieldValues, Number, make_solving, merge_spans
 
 _FLOATS = (InputKind.FLOAT32, InputKind.FLOAT64)
 _FEW = 8
+_TRIED = 12
 _STEPS = 12
 
 
@@ -85,6 +86,8 @@ def _list_few(collected: _Collected, solving: Solving) -> set[int] | None:
     found = set(collected.numbers)
     for path, term in collected.terms:
         conditions = solving.select_related(path.condition, solving.find_traits(term).names)
+        if len(found | _try_values(solving, path, term, conditions)) > _FEW:
+            return None
         own: list[z3.BoolRef] = []
         while True:
             try:
@@ -98,6 +101,20 @@ def _list_few(collected: _Collected, solving: Solving) -> set[int] | None:
                 return None
             found.add(value)
             own.append(term != z3.BitVecVal(value, collected.bits))  # pyright: ignore[reportArgumentType]
+    return found
+
+
+def _try_values(solving: Solving, path: CallbackPath, term: z3.BitVecRef, conditions: Sequence[z3.BoolRef]) -> set[int]:
+    """Values of a term that are had without the solver, by small numbers for one of its inputs."""
+    found: set[int] = set()
+    for name in sorted(solving.find_traits(term).names)[:3]:
+        given = solving.inputs.get(name)
+        if given is None:
+            continue
+        for number in range(_TRIED):
+            trial = {**path.example, name: pack_float(number, given.bits) if given.kind in _FLOATS else number}
+            if solving.holds_settled(conditions, trial) and isinstance(value := solving.evaluate(term, trial), int):
+                found.add(value)
     return found
 
 

@@ -16,17 +16,15 @@ from ...edges.documents import DocumentError, load_json
 from ..facts.interface import PRIMITIVES, TIMES, Field, Interface, make_full_name
 from ..model.flow.definitions import make_key
 from ..targets.surface.fields import make_snake_case
+from .field_types import find_integer
+from .ir.terms import read_signed
 from .outcomes import CodeLine, CrashKind, Reaction, Witness
 
 SCHEMA = 1
 _FIXED = re.compile(r"\[([0-9]+)\]")
 _ARRAY_AT_MOST = 10_000
 _FLOATS = {"float32": ("<f", 4), "float64": ("<d", 8)}
-_INTEGERS = {
-    "int8": (8, True), "uint8": (8, False), "byte": (8, False), "char": (8, False), "octet": (8, False),
-    "int16": (16, True), "uint16": (16, False), "int32": (32, True), "uint32": (32, False), "int64": (64, True),
-    "uint64": (64, False), "bool": (8, False), "wchar": (16, False),
-}  # fmt: skip
+_WIDE_CHARACTER = 0xFFFF
 
 
 class WitnessError(ValueError):
@@ -166,12 +164,11 @@ def _build_one(
         return struct.unpack(form, (bits & (256**size - 1)).to_bytes(size, "little"))[0]
     if plain == "bool":
         return bool(bits & 1)
-    if plain in _INTEGERS:
-        width, is_signed = _INTEGERS[plain]
-        if plain == "byte" and interfaces.ros == 1:
-            is_signed = True
-        bits &= 2**width - 1
-        return bits - 2**width if is_signed and bits >> (width - 1) else bits
+    if plain == "wchar":
+        return bits & _WIDE_CHARACTER
+    if (number := find_integer(plain, interfaces.ros)) is not None:
+        bits &= 2**number.bits - 1
+        return read_signed(bits, number.bits) if number.is_signed else bits
     if plain in ("string", "wstring"):
         size = min(values.get(f"{path}.size", 0), _ARRAY_AT_MOST)
         if plain == "wstring":

@@ -14,11 +14,12 @@ from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
-from ....edges.files import read_text, write_file
+from ....edges.files import read_text, write_file, write_scratch_file
 from ....edges.groups import group_pairs
 from ..outcomes import Bounds
 from .facade import RUNTIME, find_facade, list_folders
 from .interfaces import KnownInterfaces, write_headers
+from .precompiled import Facade, find_includes, split_dependencies
 from .stubs import CompileError, StubTable, parse_errors
 from .toolchain import (
     NO_CLANG,
@@ -41,7 +42,7 @@ CHECKS = (
 )
 """The checks of UBSan that are crashes; the same for the executor and for replays."""
 _IR_FLAGS = (
-    "-S", "-emit-llvm", "-O1", "-gline-tables-only", "-fno-vectorize", "-fno-slp-vectorize", "-fno-unroll-loops",
+    "-O1", "-gline-tables-only", "-fno-vectorize", "-fno-slp-vectorize", "-fno-unroll-loops",
     "-fno-jump-tables",
     "-fno-threadsafe-statics", "-fno-discard-value-names", "-DRI_SYMBOLIC=1", "-D_GLIBCXX_EXTERN_TEMPLATE=0",
     f"-fsanitize={CHECKS}", "-fno-sanitize-recover=all",
@@ -107,9 +108,13 @@ class Workshop:
                 if at.is_dir():
                     self._folders[str(at)] = None
         self._lines: dict[str, list[str]] = {}
-        self._precompiled: dict[Path, bool] = {}
+        self._wanted: dict[tuple[str, bool], bool] = {}
 
     # Headers
+
+    @cached_property
+    def _facade(self) -> Facade:
+        return Facade(self.definitions)
 
     @cached_property
     def _headers(self) -> dict[str, list[Path]]:
@@ -169,17 +174,46 @@ class Workshop:
             at = self.include / path
             if not at.exists():
                 at.parent.mkdir(parents=True, exist_ok=True)
-                write_file(at, text.encode())
+                write_scratch_file(at, text.encode())
+
+    def _provide_headers(self, unit: SourceUnit, path: Path) -> None:
+        """Makes the headers of messages and facades that a unit and the workspace's headers include, as far as their
+        text tells."""
+        facades = list_folders(self.definitions.ros)
+        waiting, seen = [path], {path}
+        while waiting:
+            at = waiting.pop()
+            text = "\n".join(self._read_lines(str(at)))
+            for header in find_includes(text):
+                folders = (at.parent, *facades, *map(Path, (*unit.folders, *self._folders)))
+                found = next((each / header for each in folders if (each / header).is_file()), None)
+                if found is None:
+                    if header.startswith("/") or not self._is_ours(header, unit):
+                        continue
+                    self._make_header(header, unit)
+                    found = self.include / header
+                if found not in seen:
+                    seen.add(found)
+                    waiting.append(found)
+
+    def _is_ours(self, header: str, unit: SourceUnit) -> bool:
+        """Whether a header is one of a message, or a facade stands for it."""
+        own = find_facade(header, self.definitions.ros, unit.boost)
+        return bool(own or self.definitions.find_key_of_header(header))
+
+    def _has_wanted(self, unit: SourceUnit) -> bool:
+        """Whether a unit was compiled with a header of the machine that ours stand for."""
+        rule = read_text(self.folder / unit.name / "harness.d", _HEADER_BYTES, "replace")
+        return any(self._is_wanted(each, unit) for each in split_dependencies(rule))
 
     def _find_headers(self, unit: SourceUnit, clang: str, path: Path) -> None:
         """Provides all headers that a unit includes and that are not there."""
         seen: set[str] = set()
         for _ in range(_ROUNDS_OF_HEADERS):
-            command = [clang, *self._list_flags(unit), "-M", "-MG", str(path)]
-            run = run_compiler(command, path.parent)
+            run = self._run_clang(unit, clang, ("-M", "-MG", str(path)), path.parent)
             if run.status != 0 and not run.out:
                 return
-            wanted = [each for each in _split_dependencies(run.out) if self._is_wanted(each, unit)]
+            wanted = [each for each in split_dependencies(run.out) if self._is_wanted(each, unit)]
             new = [each for each in map(self._shorten, wanted) if each not in seen]
             if not new:
                 return
@@ -189,6 +223,12 @@ class Workshop:
 
     def _is_wanted(self, path: str, unit: SourceUnit) -> bool:
         """Whether a header is not there, or is one of ROS that is installed and stands in the way of ours."""
+        key = path, unit.boost
+        if key not in self._wanted:
+            self._wanted[key] = self._looks_wanted(path, unit)
+        return self._wanted[key]
+
+    def _looks_wanted(self, path: str, unit: SourceUnit) -> bool:
         if not path.startswith("/"):
             return True
         at = next((Path(path).relative_to(one) for one in _SYSTEM if path.startswith(one + "/")), None)
@@ -215,29 +255,36 @@ class Workshop:
 
     def _list_flags(self, unit: SourceUnit) -> list[str]:
         folders = [str(self.include), *map(str, list_folders(self.definitions.ros))]
-        flags = [
-            "-x", "c++", f"-std=gnu++{unit.standard}", "-w", "-fno-access-control", f"-DRI_ROS={self.definitions.ros}",
-            f"-DRI_TEXT={self.bounds.text}", f"-DRI_ARRAY={self.bounds.array}", "-D_GLIBCXX_ASSERTIONS",
-            "-D_GNU_SOURCE",
-            "-U_FORTIFY_SOURCE", "-UNDEBUG",
-        ]  # fmt: skip
+        flags = ["-x", "c++", *self._list_macros(unit)]
         flags += [f"-D{each}" for each in unit.definitions]
         flags += sorted(unit.stubs.flags) if unit.stubs is not None else []
         flags += ["-include", str(self._find_stubs(unit))]
         flags += [f"-I{each}" for each in (*folders, *unit.folders, *self._folders)]
         return [*flags, *(each for one in self._system for each in ("-isystem", one))]
 
+    def _list_macros(self, unit: SourceUnit) -> list[str]:
+        """What all units of a standard are compiled with."""
+        return [
+            f"-std=gnu++{unit.standard}", "-w", "-fno-access-control", f"-DRI_ROS={self.definitions.ros}",
+            f"-DRI_TEXT={self.bounds.text}", f"-DRI_ARRAY={self.bounds.array}", "-D_GLIBCXX_ASSERTIONS",
+            "-D_GNU_SOURCE",
+            "-U_FORTIFY_SOURCE", "-UNDEBUG",
+        ]  # fmt: skip
+
     def _find_stubs(self, unit: SourceUnit) -> Path:
         return self.folder / unit.name / "ri_stubs.hpp"
 
     def _read_line(self, path: str, number: int) -> str:
+        lines = self._read_lines(path)
+        return lines[number - 1] if 0 < number <= len(lines) else ""
+
+    def _read_lines(self, path: str) -> list[str]:
         if path not in self._lines:
             try:
                 self._lines[path] = read_text(Path(path), _HEADER_BYTES, "replace").split("\n")
             except OSError:
                 self._lines[path] = []
-        lines = self._lines[path]
-        return lines[number - 1] if 0 < number <= len(lines) else ""
+        return self._lines[path]
 
     def prepare(self, unit: SourceUnit, write: Callable[[Collection[str]], SourceUnit] | None = None) -> Path:
         """Makes a unit compile: provides headers, stands for what these declare, and leaves parts out that do not
@@ -250,10 +297,16 @@ class Workshop:
         path = folder / "harness.cpp"
         unit.stubs = StubTable(self._read_line, self._is_own, self._list_bases)
         self._store(unit, path)
-        self._find_headers(unit, clang, path)
+        self._provide_headers(unit, path)
         first: CompileError | None = None
+        is_searched = False
         for _ in range(_ROUNDS_OF_STUBS):
             run = self._check(unit, clang, path)
+            if not is_searched and (run.status != 0 or self._has_wanted(unit)):
+                # Only now the preprocessor is asked, which follows what is included into headers of the machine.
+                is_searched = True
+                self._find_headers(unit, clang, path)
+                continue
             if run.status == 0:
                 return path
             errors = parse_errors(run.errors)
@@ -295,39 +348,35 @@ class Workshop:
         shutil.rmtree(self.include / "boost", ignore_errors=True)
 
     def _store(self, unit: SourceUnit, path: Path) -> None:
-        write_file(path, unit.text.encode())
-        write_file(self._find_stubs(unit), (unit.stubs or StubTable(self._read_line)).render().encode())
+        write_scratch_file(path, unit.text.encode())
+        write_scratch_file(self._find_stubs(unit), (unit.stubs or StubTable(self._read_line)).render().encode())
         self._lines.pop(str(path), None)
 
     def _check(self, unit: SourceUnit, clang: str, path: Path) -> CompilerRun:
-        flags = ["-ferror-limit=0", "-fno-caret-diagnostics", "-fno-spell-checking", "-ftemplate-backtrace-limit=1"]
-        base = self._list_flags(unit)
+        flags = ("-ferror-limit=0", "-fno-caret-diagnostics", "-fno-spell-checking", "-ftemplate-backtrace-limit=1")
+        flags = (*flags, "-S", "-emit-llvm", "-MD", "-MF", "harness.d", str(path), "-o", "harness.ll")
+        return self._run_clang(unit, clang, flags, path.parent)
+
+    def _run_clang(self, unit: SourceUnit, clang: str, rest: Sequence[str], folder: Path) -> CompilerRun:
+        """Runs clang as for IR, with the facade as it was compiled before where a unit has it as it is."""
+        flags = self._list_flags(unit)
         made = self._find_precompiled(unit, clang)
-        if made is not None:
-            base[base.index("-include") : base.index("-include")] = ["-include-pch", str(made)]
-        command = [clang, *base, *_IR_FLAGS, *flags, str(path), "-o", "harness.ll"]
-        return run_compiler(command, path.parent)
+        if made is None:
+            return run_compiler([clang, *flags, *_IR_FLAGS, *rest], folder)
+        at = flags.index("-include")
+        # Its headers come first: the same ones elsewhere would define everything again.
+        given = ("-include-pch", str(made), f"-I{made.parent / 'include'}")
+        run = run_compiler([clang, *flags[:at], *given, *flags[at:], *_IR_FLAGS, *rest], folder)
+        if run.status < 0 or (run.status and (str(made) in run.errors or "PCH file" in run.errors)):
+            self._facade.forget(made)
+            return run_compiler([clang, *flags, *_IR_FLAGS, *rest], folder)
+        return run
 
     def _find_precompiled(self, unit: SourceUnit, clang: str) -> Path | None:
         """The facade, compiled once for all units that are compiled alike; None for the others."""
         if unit.definitions or unit.stubs is None or unit.stubs.flags or unit.stubs.has_hooks or not unit.boost:
             return None
-        made = self.folder / f"facade{unit.standard}.pch"
-        if made not in self._precompiled:
-            header = self.folder / "facade.hpp"
-            name = "rclcpp/rclcpp.hpp" if self.definitions.ros == 2 else "ros/ros.h"
-            write_file(header, f'#pragma once\n#include "ri_core.hpp"\n#include <{name}>\n'.encode())
-            plain = SourceUnit("facade", "", standard=unit.standard, stubs=unit.stubs)
-            self._find_headers(plain, clang, header)
-            flags = self._list_flags(plain)
-            at = flags.index("-include")
-            del flags[at : at + 2]
-            flags[flags.index("c++")] = "c++-header"
-            # Headers that stand for Boost's come and go with the units; what counts is that they are of the same text.
-            command = [clang, *flags, *_IR_FLAGS, "-Xclang", "-fno-pch-timestamp", str(header), "-o", str(made)]
-            command = [each for each in command if each not in ("-S", "-emit-llvm")]
-            self._precompiled[made] = run_compiler(command, self.folder).status == 0
-        return made if self._precompiled[made] else None
+        return self._facade.find_precompiled(clang, [*self._list_macros(unit), *_IR_FLAGS])
 
     def _describe(self, error: CompileError) -> str:
         path = Path(error.path)
@@ -434,7 +483,7 @@ class Workshop:
             f'FLAGS="$FLAGS -DRI_KLEE_ENTRY={entry} ${{KLEE_INCLUDE:+-I$KLEE_INCLUDE}}"',
             "eval $CLANG $FLAGS -emit-llvm -c klee_runtime.cpp -o klee_runtime.bc",
             "$LINK harness.bc klee_runtime.bc -o whole.bc",
-            'exec $KLEE --libc=klee --max-time="${SECONDS_AT_MOST:-60}" --emit-all-errors whole.bc', "",
+            'exec $KLEE --libc=klee --ubsan-runtime --max-time="${SECONDS_AT_MOST:-60}" --emit-all-errors whole.bc', "",
         ]  # fmt: skip
         write_file(script, "\n".join(lines).encode())
         script.chmod(0o755)
@@ -443,9 +492,3 @@ class Workshop:
 
 def _escape(text: str) -> str:
     return text.replace("\\", "\\\\").replace('"', '\\"').replace("$", "\\$")
-
-
-def _split_dependencies(text: str) -> list[str]:
-    """The paths that a make rule names behind its target."""
-    rest = text.partition(":")[2].replace("\\\n", " ")
-    return [each.replace("\\ ", " ") for each in re.findall(r"(?:\\ |\S)+", rest)]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import tempfile
 from collections.abc import Mapping, Sequence
@@ -17,6 +18,7 @@ from typing import NamedTuple
 from ....edges.files import read_text, write_file
 from ..outcomes import NOWHERE, CodeLine, CrashKind, Observable, Reaction, Witness
 from ..sandbox import end_group, find_isolation, make_limiter
+from .toolchain import run_compiler
 
 SECONDS = 2
 """Of one witness, from which on a callback counts as endless."""
@@ -25,6 +27,11 @@ _FILE_BYTES = 50_000_000
 _OUTPUT_BYTES = 20_000_000
 _UNKNOWN, _IMPOSSIBLE, _ENDLESS = 77, 78, 79
 _FRAME = re.compile(r"^\s*#\d+ 0x[0-9a-f]+ in (?P<function>.*?) (?P<path>/[^:\s]+):(?P<line>\d+)", re.MULTILINE)
+_BARE_FRAME = re.compile(
+    r"^(?P<start>\s*#\d+ 0x[0-9a-f]+ in .*?) \((?P<module>/[^()\s]+)\+(?P<offset>0x[0-9a-f]+)\).*$", re.MULTILINE
+)
+_HAS_LINE = re.compile(r"/[^:]+:[1-9][0-9]*( |$)")
+_MOST_FRAMES = 16
 _RUNTIME_ERROR = re.compile(r"^(?P<path>[^\s:]+):(?P<line>\d+):\d+: runtime error: (?P<text>.*)$", re.MULTILINE)
 _ASSERTION = re.compile(r"(?P<path>[^\s:]+):(?P<line>\d+): .*?: Assertion [`'](?P<text>.*)' failed")
 _THROWN = re.compile(
@@ -85,7 +92,7 @@ def replay(
         isolation = find_isolation()
         command = [*isolation, str(program), entry, str(given), str(out), str(seconds)]
         why = run_limited(command, Path(folder), seconds * len(witnesses) + 20)
-        found = _read_results(out, root)
+        found = _read_results(out, root, program)
         outside = Replayed(Reaction.UNKNOWN, reason=why or "the replay ended early", begun=False)
         return [found.get(at, outside)._replace(is_isolated=bool(isolation)) for at in range(len(witnesses))]
 
@@ -134,7 +141,7 @@ class _Case:
         self.status = -1
 
 
-def _read_results(out: Path, root: Path) -> dict[int, Replayed]:
+def _read_results(out: Path, root: Path, program: Path) -> dict[int, Replayed]:
     try:
         text = read_text(out, _OUTPUT_BYTES, "replace")
     except OSError:
@@ -147,7 +154,7 @@ def _read_results(out: Path, root: Path) -> dict[int, Replayed]:
             case, number = _Case(), int(rest[0])
         elif word == "status":
             case.status = int(rest[0])
-            found[number] = _judge(case, _read_errors(out, number), root)
+            found[number] = _judge(case, complete_frames(_read_errors(out, number), program), root)
         else:
             _note(case, word, rest)
     return found
@@ -261,6 +268,28 @@ def _classify_address(kind: str, errors: str) -> CrashKind:
         is_null = found is not None and int(found["address"], 16) < 0x10000
         return CrashKind.NULL if is_null or "zero page" in errors else CrashKind.INDEX
     return _ADDRESSES.get(kind, CrashKind.INDEX)
+
+
+def complete_frames(errors: str, program: Path) -> str:
+    """A stack trace with the lines of those calls in a program that the sanitizer's own reader has no line of: it loses
+    some at the ends of functions."""
+    bare = [found for found in _BARE_FRAME.finditer(errors) if found["module"] == str(program)][:_MOST_FRAMES]
+    tool = shutil.which("addr2line")
+    if not bare or not tool or _RUNTIME_ERROR.search(errors) is not None:
+        return errors
+    offsets = list(dict.fromkeys(found["offset"] for found in bare))
+    run = run_compiler([tool, "-a", "-i", "-e", str(program), *offsets], program.parent, 60)
+    lines: dict[int, list[str]] = {}
+    for row in run.out.splitlines():
+        if row.startswith("0x"):
+            rows = lines.setdefault(int(row, 16), [])
+        elif lines and _HAS_LINE.match(row):
+            rows.append(row.partition(" (")[0])
+    for found in bare:
+        known = [f"{found['start']} {row}" for row in lines.get(int(found["offset"], 16), ())]
+        if known:
+            errors = errors.replace(found[0], "\n".join(known))
+    return errors
 
 
 def _find_frame(errors: str, root: Path) -> CodeLine:

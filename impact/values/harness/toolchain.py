@@ -59,8 +59,14 @@ def _list_clangs() -> list[str]:
     return [path for path in map(shutil.which, names) if path]
 
 
+@cache
+def describe_version(path: str) -> str:
+    """What a compiler says of itself."""
+    return run_compiler([path, "--version"], Path("/"), 20).out
+
+
 def _read_version(path: str) -> int:
-    found = _VERSION.search(run_compiler([path, "--version"], Path("/"), 20).out)
+    found = _VERSION.search(describe_version(path))
     return int(found[1]) if found is not None else 0
 
 

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import ast
 import time
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import z3
 
 from ..outcomes import Bounds, CallbackPath, CrashKind, Exploration, Reaction
+from .habits import describe_class, list_called_by, list_read_attributes, list_read_names, list_set_globals
 from .library import make_like
 from .machine import PythonMachine
 from .messages import Messages
 from .modules import FindModule, Handle, ModuleCode, PythonClass, PythonFunction, PythonObject, Scope, Unsettled
 from .run import PythonRun, PythonThrownError
-from .terms import ListValue, NotModelledError, Opaque, Record, SymbolicText, is_number
+from .terms import ArrayValue, ListValue, NotModelledError, Opaque, Record, SymbolicText, is_number
 
 _KINDS = {
     "ZeroDivisionError": CrashKind.DIVISION, "IndexError": CrashKind.INDEX, "AssertionError": CrashKind.ASSERTION,
@@ -33,15 +33,6 @@ class CallbackCode(NamedTuple):
     message: str
 
 
-@dataclass(slots=True)
-class _Class:
-    """What the methods of a class do with members of their object. written: names, by the method that sets them; read:
-    the same."""
-
-    written: dict[str, set[str]] = field(default_factory=dict)
-    read: dict[str, set[str]] = field(default_factory=dict)
-
-
 def explore_callback(
     callback: CallbackCode, messages: Messages, find_module: FindModule, bounds: Bounds
 ) -> Exploration:
@@ -51,10 +42,11 @@ def explore_callback(
     deadline = started + bounds.seconds
     found = Exploration(bounds=bounds)
     pending: list[list[bool]] = [[]]
+    prepared: list[bool | None] = []
     while pending:
         if time.monotonic() > deadline or len(found.paths) >= bounds.paths:
             break
-        run = PythonRun(pending.pop(), bounds, found.inputs, deadline)
+        run = PythonRun(pending.pop(), bounds, found.inputs, deadline, prepared)
         path = _take_way(callback, run, messages, find_module)
         found.instructions += run.steps
         pending.extend(run.open_ways)
@@ -85,7 +77,7 @@ def _take_way(
     modules[module.name] = module
     watch = _Watch(machine)
     try:
-        machine.is_quiet = True
+        machine.is_quiet = run.is_preparing = True
         machine.load(module)
         owner, function = _find_callback(machine, module, callback)
         node: PythonObject | None = None
@@ -98,6 +90,7 @@ def _take_way(
         if callback.message:
             given.append(messages.make_input(run, callback.message, "msg"))
         machine.is_quiet = False
+        run.is_preparing = False
         machine.call_function(function, [*given, *_make_others(function, len(given))], {})
         watch.finish()
     except PythonThrownError as error:
@@ -200,7 +193,7 @@ def _make_others(function: PythonFunction, given: int) -> list[Any]:
 def _make_node(machine: PythonMachine, cls: PythonClass, callback: str) -> PythonObject:
     """The object whose method the callback is: its constructor executed as far as that can be, and members that other
     methods set made symbolic."""
-    node = PythonObject(cls)
+    node = machine.node = PythonObject(cls)
     maker = cls.find("__init__")
     if isinstance(maker, PythonFunction) and isinstance(maker.node, ast.FunctionDef):
         arguments = maker.node.args
@@ -221,7 +214,7 @@ def _make_node(machine: PythonMachine, cls: PythonClass, callback: str) -> Pytho
         for statement in maker.node.body:
             machine.execute_leniently(statement, scope)
     habits = describe_class(cls)
-    makers = {"__init__", *_list_called_by(cls, "__init__")}
+    makers = list_called_by(cls, "__init__")
     for name, methods in sorted(habits.written.items()):
         if methods <= makers and name in node.members:
             continue
@@ -233,24 +226,10 @@ def _make_node(machine: PythonMachine, cls: PythonClass, callback: str) -> Pytho
 
 def _free_globals(machine: PythonMachine, module: ModuleCode) -> None:
     """Makes the names of a module symbolic that its functions set: other callbacks may have been called before."""
-    for name in sorted(_list_set_globals(module.tree)):
+    for name in sorted(list_set_globals(module.tree)):
         value = module.names.get(name, machine)
         if value is not machine and not isinstance(value, (PythonObject, PythonClass, PythonFunction)):
             module.names[name] = _make_state(machine, f"global.{name}", value)
-
-
-def _list_set_globals(tree: ast.Module) -> set[str]:
-    """Names of a module that one of its functions sets after `global`."""
-    found: set[str] = set()
-    for function in ast.walk(tree):
-        if isinstance(function, (ast.FunctionDef, ast.AsyncFunctionDef)):
-            given = {name for node in ast.walk(function) if isinstance(node, ast.Global) for name in node.names}
-            found |= {
-                node.id
-                for node in ast.walk(function)
-                if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) and node.id in given
-            }
-    return found
 
 
 def _make_state(machine: PythonMachine, path: str, value: Any) -> Any:
@@ -261,79 +240,9 @@ def _make_state(machine: PythonMachine, path: str, value: Any) -> Any:
         return make_like(machine, path, value)
     if isinstance(value, Handle):
         return value
+    if isinstance(value, ArrayValue):
+        return ArrayValue(path, value.shape)
     return Opaque(path)
-
-
-def describe_class(cls: PythonClass) -> _Class:
-    """Which methods of a class write and read which members."""
-    found = _Class()
-    for one in cls.list_order():
-        for method in one.node.body:
-            if isinstance(method, (ast.FunctionDef, ast.AsyncFunctionDef)):
-                for name, is_written in _list_members(method):
-                    (found.written if is_written else found.read).setdefault(name, set()).add(method.name)
-    return found
-
-
-def _list_members(method: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[tuple[str, bool]]:
-    own = method.args.args[0].arg if method.args.args else ""
-    for node in ast.walk(method):
-        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == own:
-            yield node.attr, isinstance(node.ctx, ast.Store)
-        elif isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store):
-            inner = node.value
-            if isinstance(inner, ast.Attribute) and isinstance(inner.value, ast.Name) and inner.value.id == own:
-                yield inner.attr, True
-        elif isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Attribute):
-            inner = node.target
-            if isinstance(inner.value, ast.Name) and inner.value.id == own:
-                yield inner.attr, True
-        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
-            inner = node.func.value
-            changes = node.func.attr in (
-                "append",
-                "extend",
-                "pop",
-                "clear",
-                "insert",
-                "add",
-                "update",
-                "popleft",
-                "remove",
-            )
-            if (
-                changes
-                and isinstance(inner, ast.Attribute)
-                and isinstance(inner.value, ast.Name)
-                and inner.value.id == own
-            ):
-                yield inner.attr, True
-
-
-def _list_called_by(cls: PythonClass, name: str) -> set[str]:
-    """Methods that only a method of the same class calls, as far as the class shows."""
-    calls: dict[str, set[str]] = {}
-    for one in cls.list_order():
-        for method in one.node.body:
-            if isinstance(method, ast.FunctionDef):
-                for node in ast.walk(method):
-                    if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self":
-                        calls.setdefault(node.attr, set()).add(method.name)
-    found = {name}
-    while True:
-        more = {called for called, by in calls.items() if by <= found and called not in found and cls.find(called)}
-        called_directly = {
-            node.func.attr
-            for one in cls.list_order()
-            for method in one.node.body
-            if isinstance(method, ast.FunctionDef) and method.name in found
-            for node in ast.walk(method)
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)
-        }
-        more &= called_directly
-        if not more:
-            return found
-        found |= more
 
 
 @dataclass(slots=True)
@@ -364,19 +273,17 @@ class _Watch:
             habits = describe_class(node.cls)
             own = function.name
             names = {
-                name for name in {*habits.written, *node.members} if habits.read.get(name, set()) - {own, "__init__"}
+                name
+                for name in {*habits.written, *node.members}
+                if habits.read.get(name, frozenset()) - {own, "__init__"}
             } | {name for name, by in habits.read.items() if own in by and name in habits.written}
             self._add("", node.members, names)
             kept += node.members.items()
-        inside = set(ast.walk(function.node))
-        read = {
-            one.id for one in ast.walk(module.tree)
-            if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Load) and one not in inside
-        }  # fmt: skip
-        set_here = _list_set_globals(module.tree)
+        read = list_read_names(module.tree, function.node)
+        set_here = list_set_globals(module.tree)
         self._add("", module.names, {
             name for name, value in module.names.items()
-            if name in read and (name in set_here or isinstance(value, (ListValue, dict, Record)))
+            if name in read and (name in set_here or isinstance(value, (ListValue, dict, Record, ArrayValue)))
         })  # fmt: skip
         kept += [(name, value) for name, value in module.names.items() if name in read]
         self._add_objects(kept, module, {id(node)})
@@ -394,7 +301,7 @@ class _Watch:
                 continue
             seen.add(id(value))
             written = describe_class(value.cls).written
-            read = _list_read_attributes(module.tree) | _list_read_attributes(value.cls.module.tree)
+            read = list_read_attributes(module.tree) | list_read_attributes(value.cls.module.tree)
             self._add(f"{path}.", value.members, {name for name in {*written, *value.members} if name in read})
             kept.extend((f"{path}.{name}", one) for name, one in value.members.items())
 
@@ -420,14 +327,12 @@ class _Watch:
         return True
 
 
-def _list_read_attributes(tree: ast.Module) -> set[str]:
-    return {one.attr for one in ast.walk(tree) if isinstance(one, ast.Attribute) and isinstance(one.ctx, ast.Load)}
-
-
 def _measure(value: Any) -> int:
     """Something that changes when a list or message is changed in place."""
     if isinstance(value, ListValue):
         return hash((len(value.elements), tuple(map(id, value.elements))))
+    if isinstance(value, ArrayValue):
+        return value.changes
     if isinstance(value, dict):
         return hash(tuple((repr(key), id(one)) for key, one in value.items()))
     if isinstance(value, Record):

@@ -14,7 +14,7 @@ from typing import Any
 
 import z3
 
-from . import operators, texts
+from . import arrays, operators, texts
 from .messages import Messages
 from .modules import Handle, KnownMethod, ModuleCode, Outside, PythonClass, PythonFunction, PythonObject, TimeValue
 from .terms import (
@@ -143,6 +143,8 @@ def call_outside(machine: Machine, name: str, given: list[Any], named: dict[str,
         function = _MATH.get(word) if name.startswith("math.") or word in _SAME_IN_NUMPY else None
         if function is not None and all(is_number(one) for one in given) and given:
             return function(machine, given)
+        if not name.startswith("math.") and (array := arrays.make_array(word, given, named)) is not None:
+            return array
     if name in _LOGS:
         if not machine.is_quiet:
             run.logs.append(name.rpartition(".")[2])
@@ -343,6 +345,23 @@ def find_member(machine: Machine, owner: Any, name: str) -> Any:
     return KnownMethod(owner, name)
 
 
+def _convert_to_bytes(machine: Machine, value: int | Whole, given: list[Any], named: dict[str, Any]) -> Any:
+    """`value.to_bytes(length, order, signed=...)`. Raises what Python raises for a number that does not fit."""
+    length = given[0] if given else named.get("length", 1)
+    is_signed = named.get("signed", False)
+    if type(length) is not int or type(is_signed) is not bool or not 0 < length <= 8:
+        raise NotModelledError("to_bytes() of a length that is not known")
+    bits = 8 * length
+    low, high = (-(1 << (bits - 1)), (1 << (bits - 1)) - 1) if is_signed else (0, (1 << bits) - 1)
+    for kind, limit in ((ast.Lt, low), (ast.Gt, high)):
+        if machine.is_true(operators.compare(kind, value, limit)):
+            below_zero = kind is ast.Lt and not is_signed
+            raise machine.run.throw(
+                "OverflowError", "can't convert negative int to unsigned" if below_zero else "int too big to convert"
+            )
+    return Opaque("bytes of a number")
+
+
 def call_method(machine: Machine, owner: Any, name: str, given: list[Any], named: dict[str, Any]) -> Any:
     """Calls a method of a value that the executor itself knows."""
     if isinstance(owner, (str, SymbolicText)):
@@ -355,6 +374,8 @@ def call_method(machine: Machine, owner: Any, name: str, given: list[Any], named
         return _call_handle_method(machine, owner, name, given, named)
     if isinstance(owner, PythonObject):
         return _call_base(machine, owner, name, given, named)
+    if isinstance(owner, (int, Whole)) and name == "to_bytes":
+        return _convert_to_bytes(machine, owner, given, named)
     if isinstance(owner, TimeValue) or (
         isinstance(owner, Record) and name in ("to_sec", "to_nsec", "to_time", "is_zero")
     ):

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import ast
 import builtins
+import contextlib
 from collections.abc import Sequence
 from typing import Any
 
 import z3
 
 from ..outcomes import CodeLine, Sent
-from . import library, operators, texts
+from . import arrays, library, operators, texts
+from .habits import has_yield, list_outer_names, list_stored
 from .messages import Messages
 from .modules import (
     BoundMethod,
@@ -28,6 +30,7 @@ from .modules import (
 )  # fmt: skip
 from .run import PythonRun, PythonThrownError
 from .terms import (
+    ArrayValue,
     ListValue,
     NotModelledError,
     Opaque,
@@ -44,6 +47,8 @@ from .terms import (
 _DEEPEST = 40
 _MISSING = object()
 _PLAIN = (int, float, str, bytes, bool, type(None))
+_LOOSE = (*_PLAIN, Whole, Real, Truth, SymbolicText, Opaque)
+"""What is any value of its kind where it is not known which it is."""
 
 
 class _BreakSignal(Exception):
@@ -68,6 +73,8 @@ class PythonMachine:
         self._depth = 0
         self.is_quiet = False
         """Whether effects are not noted: while a node is being made."""
+        self.node: PythonObject | None = None
+        """The object whose method the callback is."""
 
     # Modules and functions.
 
@@ -81,35 +88,52 @@ class PythonMachine:
         return module
 
     def execute_leniently(self, statement: ast.stmt, scope: Scope) -> None:
-        """Executes a statement; where that cannot be done, its names are of things that nothing is known of."""
+        """Executes a statement; where that cannot be done, what it sets may be anything."""
         try:
             self.execute(statement, scope)
         except (NotModelledError, PythonThrownError):
-            for node in ast.walk(statement):
-                if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
-                    scope.names.setdefault(node.id, Opaque(node.id))
-                elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
-                    try:
-                        owner = self.evaluate(node.value, scope)
-                    except (NotModelledError, PythonThrownError):
-                        continue
-                    if isinstance(owner, PythonObject):
-                        owner.members.setdefault(node.attr, Opaque(node.attr))
+            self._forget(statement, scope)
         except (_BreakSignal, _ContinueSignal, _ReturnSignal):
             pass
+
+    def _forget(self, statement: ast.stmt, scope: Scope) -> None:
+        """Names and members that a statement sets are of things that nothing is known of, but for their kind where
+        they were set before."""
+        names, members = list_stored(statement)
+        for name in names:
+            if name not in scope.names or isinstance(scope.names[name], _LOOSE):
+                scope.names[name] = Opaque(name)
+        for node in members:
+            try:
+                owner = self.evaluate(node.value, scope)
+            except (NotModelledError, PythonThrownError):
+                continue
+            if isinstance(owner, PythonObject):
+                self._loosen(owner, node.attr)
+
+    def _loosen(self, owner: PythonObject, name: str) -> None:
+        """Lets a member be any value of its kind; what ROS or the workspace made is kept."""
+        path = f"this.{name}"
+        value = owner.members.get(name, _MISSING)
+        if owner is not self.node:
+            if isinstance(value, _LOOSE) or value is _MISSING:
+                owner.members[name] = Opaque(name)
+        elif value is None:
+            owner.members[name] = Unsettled(path)
+        elif isinstance(value, _LOOSE):
+            owner.members[name] = library.make_like(self, path, value)
+        elif value is _MISSING:
+            owner.members[name] = Opaque(path)
 
     def call_function(self, function: PythonFunction, given: Sequence[Any], named: dict[str, Any]) -> Any:
         """Calls a function of the workspace. Raises PythonThrownError and NotModelledError."""
         node = function.node
         if self._depth > _DEEPEST:
             raise NotModelledError("calls of more than 40 levels")
-        if isinstance(node, ast.AsyncFunctionDef) or _has_yield(node):
+        if isinstance(node, ast.AsyncFunctionDef) or has_yield(node):
             raise NotModelledError(f"{function.name}() is a coroutine or generator")
         names = self._bind(function, list(given), dict(named))
-        outside = frozenset(
-            name for each in ast.walk(node) if isinstance(each, (ast.Global, ast.Nonlocal)) for name in each.names
-        )
-        scope = Scope(function.scope.module, names, function.scope, outside)
+        scope = Scope(function.scope.module, names, function.scope, list_outer_names(node))
         place = self.run.place
         self._depth += 1
         try:
@@ -168,9 +192,16 @@ class PythonMachine:
     # Statements.
 
     def execute_all(self, body: Sequence[ast.stmt], scope: Scope) -> None:
-        """Executes statements in order."""
+        """Executes statements in order. While a node is made, what cannot be executed is left out one by one."""
         for statement in body:
-            self.execute(statement, scope)
+            try:
+                self.execute(statement, scope)
+            except NotModelledError:
+                if not self.run.is_preparing:
+                    raise
+                self._forget(statement, scope)
+                if isinstance(statement, ast.Return):
+                    raise _ReturnSignal(Opaque(_spell(statement.value) if statement.value else "")) from None
 
     def execute(self, node: ast.stmt, scope: Scope) -> None:
         """Executes one statement."""
@@ -209,7 +240,21 @@ class PythonMachine:
         self.assign(node.target, self.calculate(type(node.op), old, value), scope)
 
     def _execute_if(self, node: ast.If, scope: Scope) -> None:
-        self.execute_all(node.body if self.is_true(self.evaluate(node.test, scope)) else node.orelse, scope)
+        try:
+            is_chosen = self.is_true(self.evaluate(node.test, scope))
+        except NotModelledError:
+            if not self.run.is_preparing:
+                raise
+            self._execute_either(node, scope)
+            return
+        self.execute_all(node.body if is_chosen else node.orelse, scope)
+
+    def _execute_either(self, node: ast.If, scope: Scope) -> None:
+        """Executes both branches while a node is made: what they set is there, with any value of its kind."""
+        for body in (node.body, node.orelse):
+            with contextlib.suppress(_BreakSignal, _ContinueSignal, _ReturnSignal, PythonThrownError):
+                self.execute_all(body, scope)
+        self._forget(node, scope)
 
     def _execute_for(self, node: ast.For, scope: Scope) -> None:
         for count, value in enumerate(self.iterate(self.evaluate(node.iter, scope))):
@@ -430,7 +475,7 @@ class PythonMachine:
                 value.name = target.id
             holder.names[target.id] = value
         elif isinstance(target, (ast.Tuple, ast.List)):
-            found = self.iterate(value)
+            found = self._unpack(value, target.elts)
             starred = [index for index, one in enumerate(target.elts) if isinstance(one, ast.Starred)]
             if starred:
                 at, rest = starred[0], len(target.elts) - starred[0] - 1
@@ -448,6 +493,13 @@ class PythonMachine:
             self._set_item(self.evaluate(target.value, scope), self.evaluate(target.slice, scope), value)
         else:
             raise NotModelledError("what is assigned to")
+
+    def _unpack(self, value: Any, targets: Sequence[ast.expr]) -> list[Any]:
+        """The elements that several targets are given; what is not known is taken to have as many."""
+        if isinstance(value, Opaque) and not any(isinstance(one, ast.Starred) for one in targets):
+            self.run.assumed[f"{value.name} has {len(targets)} elements"] = None
+            return [Opaque(f"{value.name}[{index}]") for index in range(len(targets))]
+        return self.iterate(value)
 
     def set_member(self, owner: Any, name: str, value: Any) -> None:
         if isinstance(owner, PythonObject):
@@ -481,14 +533,27 @@ class PythonMachine:
         elif isinstance(owner, ListValue):
             if owner.is_frozen:
                 raise self.run.throw("TypeError", "a tuple does not change")
-            index = self._find_index(owner, key)
-            owner.elements[index] = value
+            if isinstance(key, slice):
+                self._set_slice(owner, key, value)
+            else:
+                owner.elements[self._find_index(owner, key)] = value
+        elif isinstance(owner, ArrayValue):
+            arrays.set_elements(self.run, owner, key, value)
         elif isinstance(owner, Opaque):
             self.run.not_modelled[f"{owner.name}[…] = …"] = None
         elif owner is None:
             raise self.run.throw("TypeError", "None has no elements")
         else:
             raise NotModelledError("an element set")
+
+    def _set_slice(self, owner: ListValue, key: slice, value: Any) -> None:
+        if any(is_symbolic(one) or isinstance(one, Opaque) for one in (key.start, key.stop, key.step)):
+            raise NotModelledError("a slice whose bounds are not known")
+        items = self.iterate(value)
+        try:
+            self.run.fix_items(owner)[key] = items
+        except ValueError as error:
+            raise self.run.throw("ValueError", str(error)) from None
 
     def _find_holder(self, name: str, scope: Scope) -> Scope:
         one: Scope | None = scope.outer
@@ -511,11 +576,17 @@ class PythonMachine:
     # Expressions.
 
     def evaluate(self, node: ast.expr, scope: Scope) -> Any:
-        """The value of an expression. Raises PythonThrownError and NotModelledError."""
+        """The value of an expression. Raises PythonThrownError and NotModelledError, but for the latter while a node
+        is made: what is not known is any value then."""
         step = getattr(self, f"_evaluate_{type(node).__name__.lower()}", None)
-        if step is None:
-            raise NotModelledError(f"expression {type(node).__name__}")
-        return step(node, scope)
+        try:
+            if step is None:
+                raise NotModelledError(f"expression {type(node).__name__}")
+            return step(node, scope)
+        except NotModelledError:
+            if not self.run.is_preparing:
+                raise
+            return Opaque(_spell(node) or "something")
 
     def _evaluate_constant(self, node: ast.Constant, scope: Scope) -> Any:
         return node.value
@@ -903,19 +974,21 @@ class PythonMachine:
 
     def _evaluate_subscript(self, node: ast.Subscript, scope: Scope) -> Any:
         owner = self.evaluate(node.value, scope)
-        if isinstance(node.slice, ast.Slice):
-            parts = [
-                None if one is None else self.evaluate(one, scope)
-                for one in (node.slice.lower, node.slice.upper, node.slice.step)
-            ]
-            return self._cut(owner, parts)
         key = self.evaluate(node.slice, scope)
         self.run.place = CodeLine(scope.module.path, node.lineno)
+        if isinstance(key, slice):
+            return self._cut(owner, [key.start, key.stop, key.step])
         return self.get_item(owner, key)
+
+    def _evaluate_slice(self, node: ast.Slice, scope: Scope) -> Any:
+        parts = (node.lower, node.upper, node.step)
+        return slice(*[None if one is None else self.evaluate(one, scope) for one in parts])
 
     def _cut(self, owner: Any, parts: list[Any]) -> Any:
         if isinstance(owner, Opaque):
             return Opaque(owner.name)
+        if any(isinstance(one, Opaque) for one in parts):
+            raise NotModelledError("a slice whose bounds are not known")
         if any(is_symbolic(one) for one in parts):
             raise NotModelledError("a slice whose bounds are not known")
         if isinstance(owner, (str, SymbolicText)):
@@ -939,6 +1012,8 @@ class PythonMachine:
         if isinstance(owner, dict):
             return self._get_from_dictionary(owner, key)
         if isinstance(owner, Opaque):
+            if isinstance(owner, ArrayValue):
+                arrays.check_index(self.run, owner, key)
             return Opaque(f"{owner.name}[…]")
         if owner is None:
             raise self.run.throw("TypeError", "None has no elements")
@@ -1075,19 +1150,8 @@ def _make_load(node: ast.expr) -> ast.expr:
     return node
 
 
-def _has_yield(node: ast.AST) -> bool:
-    stack = list(ast.iter_child_nodes(node))
-    while stack:
-        one = stack.pop()
-        if isinstance(one, (ast.Yield, ast.YieldFrom, ast.Await)):
-            return True
-        if not isinstance(one, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)):
-            stack.extend(ast.iter_child_nodes(one))
-    return False
-
-
 def _spell(node: ast.expr) -> str:
-    """The last name of a decorator."""
+    """The last name of an expression, empty where it has none."""
     if isinstance(node, ast.Call):
         node = node.func
     if isinstance(node, ast.Attribute):

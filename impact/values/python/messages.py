@@ -9,19 +9,15 @@ from typing import Any
 import z3
 
 from ...facts.interface import PRIMITIVES, Field, Section, make_full_name
+from ..field_types import FieldInteger, find_integer
 from ..ir.terms import pack_float
 from ..outcomes import InputKind
 from .run import PythonRun
-from .terms import ListValue, Real, Record, SymbolicText, Truth, Whole, convert_to_whole, extend
+from .terms import ListValue, Opaque, Real, Record, SymbolicText, Truth, Whole, convert_to_whole, extend
 
 FindSection = Callable[[str], Section | None]
 """The fields of `package/Name`, None where they are not known."""
 
-BITS = {
-    "int8": (8, True), "uint8": (8, False), "byte": (8, True), "char": (8, False), "octet": (8, False),
-    "int16": (16, True), "uint16": (16, False), "int32": (32, True), "uint32": (32, False), "int64": (64, True),
-    "uint64": (64, False),
-}  # fmt: skip
 _DEEPEST = 12
 _TIMES = ("builtin_interfaces/Time", "builtin_interfaces/Duration")
 
@@ -70,6 +66,10 @@ class Messages:
         record.fields[name] = value
         return value
 
+    def find_integer(self, type_: str) -> FieldInteger | None:
+        """The whole number that a field of a type is, None for other types."""
+        return find_integer(type_, self._ros)
+
     def is_of(self, type_: str, name: str) -> bool:
         """Whether a type has a field."""
         return any(one.name == name for one in self.find_fields(type_) or ())
@@ -102,8 +102,10 @@ class Messages:
 
     def _make_one(self, run: PythonRun, type_: str, owner: str, path: str) -> Any:
         plain = type_.partition("<")[0]
-        if plain in BITS:
-            return run.get_whole(path, *BITS[plain])
+        if plain == "byte" and self._ros == 2:
+            return Opaque(path)  # rclpy has bytes there
+        if (number := self.find_integer(plain)) is not None:
+            return run.get_whole(path, *number)
         if plain == "bool":
             return run.get_truth(path)
         if plain in ("float32", "float64"):
@@ -123,7 +125,7 @@ class Messages:
 
     def _make_default_one(self, field: Field, owner: str) -> Any:
         plain = field.type.partition("<")[0]
-        if plain in BITS:
+        if self.find_integer(plain) is not None:
             return 0
         if plain == "bool":
             return False

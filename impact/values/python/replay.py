@@ -12,10 +12,11 @@ from typing import Any, NamedTuple
 from ....edges.documents import DocumentError, load_json
 from ...facts.interface import Field, make_full_name
 from ..harness.replay import Replayed
+from ..ir.terms import read_signed
 from ..outcomes import NOWHERE, CodeLine, CrashKind, InputKind, Observable, Reaction, Witness
 from ..sandbox import run_apart
 from .explore import find_crash_kind
-from .messages import BITS, Messages
+from .messages import Messages
 
 Kind = tuple[InputKind, int, bool]
 _PROGRAM = Path(__file__).with_name("stand_in.py")
@@ -116,10 +117,9 @@ def _build_field(messages: Messages, field: Field, owner: str, path: str, values
 
 def _build_one(messages: Messages, type_: str, owner: str, path: str, values: dict[str, int], deep: int) -> Any:
     plain = type_.partition("<")[0]
-    if plain in BITS:
-        bits, is_signed = BITS[plain]
+    if (kind := messages.find_integer(plain)) is not None:
         number = values.get(path, 0)
-        return number - (1 << bits) if is_signed and number >> (bits - 1) else number
+        return read_signed(number, kind.bits) if kind.is_signed else number
     if plain == "bool":
         return bool(values.get(path, 0))
     if plain in ("float32", "float64"):
@@ -173,7 +173,7 @@ def _describe_types(messages: Messages, first: str) -> dict[str, Any]:
         inner = {
             make_full_name(one.type.partition("<")[0], type_.partition("/")[0])
             for one in fields
-            if one.type.partition("<")[0] not in BITS and one.type.partition("<")[0] not in _SCALARS
+            if messages.find_integer(one.type.partition("<")[0]) is None and one.type.partition("<")[0] not in _SCALARS
         }
         wanted.extend(sorted(inner - set(found)))
         constants = {name: _encode(value) for name, value in messages.find_constants(type_).items()}

@@ -26,6 +26,8 @@ from .terms import (
 )  # fmt: skip
 
 _SOLVER_MILLISECONDS = 1_000
+_STEPS = 50_000
+_STEPS_OF_PREPARATION = 20_000
 GAVE_UP = "the solver gave up on a condition, so both ways are followed"
 """Stands among what is assumed."""
 
@@ -77,10 +79,12 @@ class ProgramRounds:
 
 class PythonRun:
     """A way that begins with some decisions and goes on by itself. inputs: those of all ways, by path; open_ways: the
-    decisions of ways that branch off this one."""
+    decisions of ways that branch off this one. prepared: what conditions are while a node is made, None where both can
+    be: the same on all ways, and filled by the first."""
 
     def __init__(
         self, decisions: Sequence[bool], bounds: Bounds, inputs: dict[str, SymbolicInput], deadline: float,
+        prepared: list[bool | None] | None = None,
     ):  # fmt: skip
         self._decisions, self._taken = decisions, 0
         self.bounds, self.inputs, self.deadline = bounds, inputs, deadline
@@ -101,6 +105,10 @@ class PythonRun:
         self._fresh: dict[str, int] = {}
         self.program: ProgramRounds | None = None
         """Where what runs is a program from its start, and no callback."""
+        self._prepared = prepared if prepared is not None else []
+        self._asked = 0
+        self.is_preparing = False
+        """Whether a node is being made: no way is opened then, and what is undecided raises NotModelledError."""
 
     # Decisions.
 
@@ -113,6 +121,8 @@ class PythonRun:
         """Whether a condition holds on this way; where both can be, the other way is opened."""
         if not isinstance(condition, Truth):
             return bool(condition)
+        if self.is_preparing:
+            return self._decide_once(condition.term)
         if self._taken < len(self._decisions):
             chosen = self._decisions[self._taken]
             self._taken += 1
@@ -124,6 +134,17 @@ class PythonRun:
         self._trace.append(chosen)
         self.assume(condition.term if chosen else z3.Not(condition.term))
         return chosen
+
+    def _decide_once(self, term: z3.BoolRef) -> bool:
+        """Whether a condition holds while a node is made. Raises NotModelledError where it may and may not."""
+        if self._asked == len(self._prepared):
+            may_hold, may_fail = self._check(term), self._check(z3.Not(term))
+            self._prepared.append(None if may_hold and may_fail else may_hold)
+        answer = self._prepared[self._asked]
+        self._asked += 1
+        if answer is None:
+            raise NotModelledError("a condition in a constructor")
+        return answer
 
     def _choose_way(self, term: z3.BoolRef) -> bool:
         """Which way to go on; the other is opened where it can be gone too. The last model saves a question."""
@@ -149,7 +170,10 @@ class PythonRun:
         return True
 
     def choose(self, name: str) -> bool:
-        """One of two ways that nothing is known about; both are followed. name: what is assumed."""
+        """One of two ways that nothing is known about; both are followed. name: what is assumed. Raises
+        NotModelledError while a node is made."""
+        if self.is_preparing:
+            raise NotModelledError(f"whether {name}")
         self.assumed[name] = None
         if self._taken < len(self._decisions):
             chosen = self._decisions[self._taken]
@@ -179,8 +203,8 @@ class PythonRun:
     def count_step(self) -> None:
         """Raises NotModelledError where the bounds are reached."""
         self.steps += 1
-        if self.steps > 50_000:
-            raise NotModelledError("more than 50,000 steps")
+        if self.steps > (_STEPS_OF_PREPARATION if self.is_preparing else _STEPS):
+            raise NotModelledError("too many steps")
         if not self.steps & 63 and time.monotonic() > self.deadline:
             raise NotModelledError("the time limit")
 

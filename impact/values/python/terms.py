@@ -92,6 +92,15 @@ class Opaque:
 
 
 @dataclass(slots=True)
+class ArrayValue(Opaque):
+    """An array of numpy, whose numbers are not known. shape: None where it is not known either. changes: how often
+    elements were set."""
+
+    shape: tuple[int, ...] | None = None
+    changes: int = 0
+
+
+@dataclass(slots=True)
 class Record:
     """A message. type: `package/Name`. fields: what is set; missing_reason: of a type whose definition is not known."""
 

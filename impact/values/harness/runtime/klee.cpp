@@ -1,10 +1,14 @@
-// KLEE: every input is made symbolic by its path. Effects and logs are written to standard error.
+// KLEE: every input is made symbolic by its path. A way that ends is reported by its reaction: testN.handled.err,
+// testN.log.err, testN.ignored.err, each with the message that takes it.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <klee/klee.h>
 #include "rosimpact_values.h"
 
+static int ri_effects, ri_logs;
+static struct { const void *place; void *before; uint64_t size; } ri_members[64];
+static unsigned ri_watched;
 static char ri_path[512]; static unsigned ri_lengths[64]; static unsigned ri_depth;
 static void ri_push(const char *text, int dot) {
   unsigned size = strlen(ri_path);
@@ -40,8 +44,8 @@ uint64_t ri_size(const char *name, uint64_t most) noexcept {
   uint64_t v; klee_make_symbolic(&v, sizeof v, whole); klee_assume(v <= most); return v;
 }
 void ri_characters(const char *name, char *buffer, uint64_t most) noexcept { klee_make_symbolic(buffer, most + 1, ri_name(name)); klee_assume(buffer[most] == 0); }
-void ri_effect(const char *kind, const char *name) noexcept { fprintf(stderr, "EFFECT %s %s\n", kind, name); }
-void ri_log(const char *level) noexcept { fprintf(stderr, "LOG %s\n", level); }
+void ri_effect(const char *, const char *) noexcept { ++ri_effects; }
+void ri_log(const char *) noexcept { ++ri_logs; }
 void ri_sent_begin(const char *) noexcept {}
 void ri_sent_integer(const char *, int, int, uint64_t) noexcept {}
 void ri_sent_boolean(const char *, uint64_t) noexcept {}
@@ -50,9 +54,19 @@ void ri_sent_float32(const char *, float) noexcept {}
 void ri_sent_size(const char *, uint64_t) noexcept {}
 void ri_sent_characters(const char *, const char *, uint64_t) noexcept {}
 void ri_sent_end(void) noexcept {}
-void ri_member(const char *, const void *, uint64_t) noexcept {}
-void ri_begin(void) noexcept {}
-void ri_end(void) noexcept { exit(0); }
+void ri_member(const char *, const void *place, uint64_t size) noexcept {
+  if (ri_watched == 64) return;
+  ri_members[ri_watched] = {place, malloc(size), size};
+  memcpy(ri_members[ri_watched++].before, place, size);
+}
+void ri_begin(void) noexcept { ri_effects = ri_logs = 0; }
+void ri_end(void) noexcept {
+  for (unsigned i = 0; i < ri_watched; ++i)
+    if (memcmp(ri_members[i].place, ri_members[i].before, ri_members[i].size)) ++ri_effects;
+  if (ri_effects) klee_report_error(__FILE__, __LINE__, "handled", "handled.err");
+  if (ri_logs) klee_report_error(__FILE__, __LINE__, "log-only", "log.err");
+  klee_report_error(__FILE__, __LINE__, "ignored", "ignored.err");
+}
 void ri_unknown(const char *what) noexcept { klee_warning_once(what); klee_silent_exit(77); }
 void ri_assume(int condition) noexcept { klee_assume(condition); }
 void RI_KLEE_ENTRY(void);
