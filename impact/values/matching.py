@@ -23,6 +23,8 @@ _INDEX = re.compile(r"\[\d+\]")
 _SEVERITIES = ("note", "warning", "error")
 _MOST_LISTED = 32
 _BEYOND_END = (CrashKind.INDEX, CrashKind.EMPTY)
+# What members lead to that a constructor would have filled.
+_OF_MEMBERS = (CrashKind.INDEX, CrashKind.EMPTY, CrashKind.NULL, CrashKind.DANGLING, CrashKind.EXCEPTION)
 
 
 class EarlierSender(NamedTuple):
@@ -330,11 +332,14 @@ def _list_crashes(
 ) -> Iterator[Mismatch]:  # fmt: skip
     """Crashes of a subscriber that messages of a publisher lead to, each once."""
     found: dict[tuple[CrashKind, CodeLine], tuple[str, SentWay, MessageCrash]] = {}
+    if answer.counts.keys() <= {Reaction.CRASH, Reaction.UNKNOWN}:
+        return  # what crashes on every message has most likely not been made as in a real node
     for way in row.ways:
         outcome = judged.find(answer, way)
         for crash in outcome.crashes if outcome is not None else ():
             # Whether it crashes depends on more than the message, or whether the message is sent does.
-            severity = "note" if not crash.is_certain else "error" if _is_sent_surely(way) else "warning"
+            certain = crash.is_certain and not (answer.is_bare and crash.kind in _OF_MEMBERS)
+            severity = "note" if not certain else "error" if _is_sent_surely(way) else "warning"
             known = found.get((crash.kind, crash.place))
             if known is None or _SEVERITIES.index(severity) > _SEVERITIES.index(known[0]):
                 found[crash.kind, crash.place] = severity, way, crash
@@ -351,7 +356,7 @@ def _list_crashes(
         goes_on = ros == 1 and answer.language == "python" and crash.kind is not CrashKind.ENDLESS
         yield Mismatch(
             SIZE if sizes else CRASHING, "warning" if goes_on and severity == "error" else severity, topic,
-            answer.message_type, field, values, row, answer, example, crash.is_certain, crash.place, crash.kind.value,
+            answer.message_type, field, values, row, answer, example, severity != "note", crash.place, crash.kind.value,
             _is_sent_surely(way),
         )  # fmt: skip
 
