@@ -26,7 +26,7 @@ Not reported
 
 from ...values.matching import CRASHING
 from ..vocabulary import Text, Workspace, rule
-from .mismatches import find_of_kind
+from .mismatches import find_diagnostics
 
 
 @rule(
@@ -41,4 +41,4 @@ from .mismatches import find_of_kind
     ),
 )
 def crashing_value(workspace: Workspace):
-    return find_of_kind(workspace, CRASHING)
+    return find_diagnostics(workspace, CRASHING)

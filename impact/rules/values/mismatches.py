@@ -9,7 +9,7 @@ from ..vocabulary import At, Diagnostic, Doubt, Value, Workspace
 _DOUBTS = {"error": (), "warning": (Doubt.INCOMPLETE,), "note": (Doubt.UNCHECKED,)}
 
 
-def find_of_kind(workspace: Workspace, kind: str) -> Iterator[Diagnostic]:
+def find_diagnostics(workspace: Workspace, kind: str) -> Iterator[Diagnostic]:
     """The mismatches of a rule. A crash is reported where it happens, what waits for a value where it waits, and all
     else where it is sent."""
     for one in find_unit_mismatches(workspace) if kind == UNIT else find_mismatches(workspace):
