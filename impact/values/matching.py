@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from ..model.flow.graph import Graph
+from ..model.flow.workspace import get_flow
 from .answers import CallbackAnswer, CallbackExample, FieldSets, SentThrough, SentValues, SentWay
 from .narrowing import GivenMessage, MessageCrash, MessageOutcome
 from .outcomes import CodeLine, CrashKind, InputKind, Reaction
@@ -38,7 +39,7 @@ class EarlierSender(NamedTuple):
 class Sender(NamedTuple):
     """One statement that publishes on a topic: the callback that it runs in, where it is, and what it can send. ways:
     the messages with what is exact of them; is_listed: whether these are all. via: who sent what the callback received;
-    empty where that may be anybody. key: of the callback."""
+    empty where that may be anybody. key: of the callback; nodes: that run it."""
 
     callback: str
     places: tuple[CodeLine, ...]
@@ -48,6 +49,7 @@ class Sender(NamedTuple):
     is_listed: bool = False
     via: tuple[EarlierSender, ...] = ()
     key: CallbackKey | None = None
+    nodes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -143,7 +145,7 @@ def _make_sender(
 ) -> Sender:
     return Sender(
         answer.callback, sent.places, {one.path: one for one in sent.fields}, publishers.find_type(sent.places[0]),
-        sent.ways, sent.is_listed, via, get_key(answer),
+        sent.ways, sent.is_listed, via, get_key(answer), answer.nodes,
     )  # fmt: skip
 
 
@@ -155,6 +157,7 @@ def list_mismatches(
     publishers = TopicPublishers(graph)
     senders = _follow_one_hop(answers, list_senders(answers, publishers), publishers, survey, jobs)
     judged = _Verdicts(answers, senders, survey, jobs)
+    started = [{one.node for one in launch.starts} for launch in get_flow(survey.workspace).launches]
     found: list[Mismatch] = []
     for answer in answers:
         if answer.kind != "subscriber" or not answer.is_explored:
@@ -162,11 +165,21 @@ def list_mismatches(
         for topic in answer.topics:
             rows = [row for row in senders.get(topic, []) if _fits(row, answer)]
             for row in rows:
-                found.extend(_list_crashes(answer, topic, row, judged, ros))
+                for one in _list_crashes(answer, topic, row, judged, ros):
+                    is_lone = one.severity == "error" and not _run_together(row.nodes, answer.nodes, started)
+                    found.append(replace(one, severity="warning") if is_lone else one)
                 found.extend(_list_unhandled(answer, topic, row, judged))
             if publishers.is_complete(topic, rows):
                 found.extend(_list_impossible(answer, topic, rows))
     return _drop_repeats(found)
+
+
+def _run_together(some: Sequence[str], others: Sequence[str], started: Sequence[set[str]]) -> bool:
+    """Whether some nodes run at the same time as others, as far as is known: a launch file starts both, they are one,
+    or no launch file starts any of them. started: nodes by launch file."""
+    if set(some) & set(others) or any(not nodes.isdisjoint(some) and not nodes.isdisjoint(others) for nodes in started):
+        return True
+    return bool(some and others) and all(nodes.isdisjoint((*some, *others)) for nodes in started)
 
 
 def _drop_repeats(found: Iterable[Mismatch]) -> list[Mismatch]:

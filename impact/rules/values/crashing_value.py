@@ -10,8 +10,9 @@ Why it breaks
 
 Severity
     error where the publisher sends this very message without being asked, or because of what it is known to receive,
-    and nothing else decides; warning where what the publisher receives decides, and in rospy; note where the state of
-    the subscriber, or something that is not known, decides.
+    and nothing else decides; warning where what the publisher receives decides, in rospy, in tests, and where launch
+    files start one of the two programs without the other; note where the state of the subscriber, or something that is
+    not known, decides.
 
 Example
     rate_ = 1000 / msg->period;      // a publisher leaves period at 0
