@@ -54,8 +54,9 @@ class Sources(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     rosdistro, meta_ros: clones. clones: a folder of clones called `OWNER+NAME`, with their tags. distros: those whose
     packages' surfaces are read; empty for those of the shipped ones. lists: the folder of lists of an apt, with its
     Contents indices, by platform (`debian bookworm`). apt: an apt configuration with folders of its own, by release
-    of Debian. gcc: a folder of unpacked packages, by version. stubs: folders `stdlib` of typeshed, oldest first.
-    commands: folders of packages that define CMake commands. pypi: whether pip may download wheels."""
+    of Debian. gcc, python: a folder of unpacked packages, by version. stubs: folders `stdlib` of typeshed, oldest
+    first. commands: folders of packages that define CMake commands. pypi: whether pip may download wheels.
+    opencv: the folder `cv2` of an unpacked wheel of opencv-contrib-python."""
 
     rosdistro: str = ""
     meta_ros: str = ""
@@ -64,11 +65,13 @@ class Sources(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     lists: dict[str, str] = {}
     apt: dict[str, str] = {}
     gcc: dict[str, str] = {}
+    python: dict[str, str] = {}
     stubs: tuple[str, ...] = ()
     commands: tuple[str, ...] = ()
     cmake: CMakeSources = CMakeSources()
     includes: IncludeSources = IncludeSources()
     pypi: bool = False
+    opencv: str = ""
 
 
 class BuildStep(NamedTuple):
@@ -144,6 +147,13 @@ def _read_debian_lists(module: str) -> Callable[[Sources, Path, Path], list[str]
     return list_arguments
 
 
+def _build_compiled(sources: Sources, data: Path, own: Path) -> list[str] | None:
+    """The newest stable release of Debian that has the packages of ROS 1 counts, which is the one that is named so."""
+    suite = ["--suite", f"bookworm={sources.apt['bookworm']}"] if "bookworm" in sources.apt else []
+    clones = ["--clones", sources.clones] if sources.clones else []
+    return _call("databuild.compiled", own, *suite, *clones, "--output", data) if suite else None
+
+
 def _build_libraries(sources: Sources, data: Path, own: Path) -> list[str] | None:
     clones = ["--clones", sources.clones] if sources.clones else []
     return _call("databuild.debian", own, *_list_suites(sources.apt), *clones) if sources.apt else None
@@ -162,6 +172,16 @@ def _build_std_names(sources: Sources, data: Path, own: Path) -> list[str] | Non
     return _call("databuild.std_names", *folders) if folders else None
 
 
+def _build_std_includes(sources: Sources, data: Path, own: Path) -> list[str] | None:
+    folders = [f"{version}={folder}" for version, folder in sources.gcc.items()]
+    return _call("databuild.std_includes", *folders) if folders else None
+
+
+def _build_python_modules(sources: Sources, data: Path, own: Path) -> list[str] | None:
+    folders = (word for version, folder in sources.python.items() for word in ("--python", f"{version}={folder}"))
+    return _call("databuild.python_modules", *sources.stubs, *folders, "--output", data) if sources.stubs else None
+
+
 def _build_cmake_names(sources: Sources, data: Path, own: Path) -> list[str] | None:
     named = sources.cmake
     return _call("databuild.cmake_names", named.manual, named.modules[0]) if named.manual and named.modules else None
@@ -175,6 +195,7 @@ STEPS = (
          lambda sources, data, own: _call("databuild.python_std", *sources.stubs) if sources.stubs else None),
     BuildStep("providers", ("providers.sqlite.zst", "providers.json"), ("manifests",), _build_providers),
     BuildStep("apt", ("apt.json.zst",), ("providers",), _read_debian_lists("databuild.apt")),
+    BuildStep("archive", ("archive.json.zst",), ("providers",), _read_debian_lists("databuild.archive")),
     BuildStep("sonames", ("sonames.json.zst",), (), _read_debian_lists("databuild.sonames")),
     BuildStep("find-modules", ("find_modules.json",), (),
          lambda sources, data, own: _call("databuild.find_modules", *sources.cmake.modules)
@@ -183,6 +204,8 @@ STEPS = (
     BuildStep("commands", ("commands.json.zst",), ("surfaces", "cmake-names"),
          lambda sources, data, own: _call("databuild.commands", *sources.commands) if sources.commands else None),
     BuildStep("std-names", ("std_names.json.zst",), (), _build_std_names),
+    BuildStep("std-includes", ("providers_std.json.zst",), (), _build_std_includes),
+    BuildStep("python-modules", ("python_modules.json",), (), _build_python_modules),
     BuildStep("fields", ("fields.json.zst",), ("manifests",),
          lambda sources, data, own: _call("databuild.fields", sources.clones, "--output", data / "fields.json.zst")
          if sources.clones else None),
@@ -196,9 +219,13 @@ STEPS = (
     BuildStep("libraries",
          ("libraries.sqlite", "changes_debian.json.zst", "uses_debian.json", "changes_library_tags.json.zst"),
          ("surfaces", "providers"), _build_libraries),
+    BuildStep("compiled", ("compiled.json.zst",), ("surfaces", "libraries"), _build_compiled),
     BuildStep("includes", ("includes.json.zst",), ("surfaces",), _build_includes),
     BuildStep("pypi", ("changes_pypi.json.zst",), (),
          lambda sources, data, own: _call("databuild.pypi", own, "--output", data) if sources.pypi else None),
+    BuildStep("opencv-python", ("uses_opencv.json",), (),
+         lambda sources, data, own: _call("databuild.opencv_python", sources.opencv, "--output", data)
+         if sources.opencv else None),
     BuildStep("superseded", (), ("python-std", "libraries", "pypi"),
          lambda sources, data, own: _call("databuild.superseded", "--write") if sources.clones else None),
 )  # fmt: skip
@@ -235,6 +262,7 @@ def read_sources(file: Path) -> Sources:
         lists=locate_all(named.lists),
         apt=locate_all(named.apt),
         gcc=locate_all(named.gcc),
+        python=locate_all(named.python),
         stubs=tuple(map(locate, named.stubs)),
         commands=tuple(map(locate, named.commands)),
         cmake=CMakeSources(locate(named.cmake.manual), tuple(map(locate, named.cmake.modules))),
@@ -242,6 +270,7 @@ def read_sources(file: Path) -> Sources:
             named.includes.clones, tuple(f"{version}={locate(path)}" for version, path in installed)
         ),
         pypi=named.pypi,
+        opencv=locate(named.opencv),
     )
 
 

@@ -123,16 +123,7 @@ def extract_upstream_version(version: str) -> str:
 def list_packages(lists: Path, named: Iterable[str], besides: Sequence[re.Pattern[str]] = ()) -> list[Packaged]:
     """The development packages of a suite that these names bring: those among them, and what they depend on of the same
     source. lists: the folder of apt's lists. besides: patterns of further names."""
-    fields: dict[str, dict[str, str]] = {}
-    name = ""
-    for index in sorted(lists.glob("*_Packages*")):
-        for line in unpack(index):
-            key, _, value = line.decode("utf-8", "replace").partition(": ")
-            if key == "Package":
-                name = value.strip()
-                fields[name] = {}
-            elif key in ("Size", "Version", "Source", "Section"):
-                fields[name][key] = value.strip()
+    fields = read_fields(lists)
     depends = read_dependencies(lists)
     source = {name: reported.get("Source", name).partition(" ")[0] for name, reported in fields.items()}
     sources = frozenset(source.values())
@@ -149,6 +140,21 @@ def list_packages(lists: Path, named: Iterable[str], besides: Sequence[re.Patter
             seen.update(following)
             ring += following
     return sorted(found.values())
+
+
+def read_fields(lists: Path) -> dict[str, dict[str, str]]:
+    """Size, version, source and section of each package of a suite. lists: the folder of apt's lists."""
+    fields: dict[str, dict[str, str]] = {}
+    name = ""
+    for index in sorted(lists.glob("*_Packages*")):
+        for line in unpack(index):
+            key, _, value = line.decode("utf-8", "replace").partition(": ")
+            if key == "Package":
+                name = value.strip()
+                fields[name] = {}
+            elif key in ("Size", "Version", "Source", "Section"):
+                fields[name][key] = value.strip()
+    return fields
 
 
 def derive_library_name(source: str, sources: Collection[str]) -> str:
@@ -361,7 +367,7 @@ class Run:
 
     def read_suite(self, suite: str, configuration: Path, besides: Sequence[re.Pattern[str]] = ()) -> None:
         """Reads all libraries of a suite. besides: packages that count though no key names them."""
-        lists = Path(_ask_apt(configuration, "Dir::State::lists/d"))
+        lists = find_lists(configuration)
         by_library: dict[str, list[Packaged]] = defaultdict(list)
         for package in list_packages(lists, count_uses(), besides):
             by_library[package.library].append(package)
@@ -419,6 +425,11 @@ class Run:
 
 def _find_downloaded(folder: Path, package: Packaged) -> Path | None:
     return next(iter(folder.glob(f"{package.name}_{package.version.replace(':', '%3a')}_*.deb")), None)
+
+
+def find_lists(configuration: Path) -> Path:
+    """The folder of lists of an apt configuration."""
+    return Path(_ask_apt(configuration, "Dir::State::lists/d"))
 
 
 def _ask_apt(configuration: Path, name: str) -> str:

@@ -103,6 +103,10 @@ _SKIP = re.compile(rb"usr/share/(?:doc|gir-1\.0|perl5|icons|javascript|nodejs|ca
 _ROS_SOURCE = re.compile(r"(?:ros|ament|ros2|rosidl)-|ament_|catkin$")
 
 
+_ROS_TOOLS = ("ros", "python-catkin", "colcon", "bloom", "vcstool", "osrf-pycommon")
+"""How the sources of tools begin that ROS's archive has."""
+
+
 def is_ros_source(source: str) -> bool:
     """Whether a Debian source package is of ROS itself."""
     return _ROS_SOURCE.match(source) is not None
@@ -151,6 +155,26 @@ def read_dependencies(lists: Path) -> dict[str, tuple[str, ...]]:
         name: tuple(d if d in depends else next(iter(provides.get(d, (d,)))) for d in found)
         for name, found in depends.items()
     }
+
+
+def read_names(lists: Path) -> frozenset[str]:
+    """The packages of a suite, virtual ones included, from the Packages indices in an apt lists folder. Raises
+    FileNotFoundError without them."""
+    indices = sorted(lists.glob("*_Packages*"))
+    if not indices:
+        raise FileNotFoundError(f"{lists}: no Packages index; run `apt-get update`")
+    found: set[str] = set()
+    for name, fields in _read_fields(indices):
+        found.update((name, *_parse_relations(fields.get("Provides", ""))))
+    return frozenset(found)
+
+
+def list_ros_packages(lists: Path) -> Iterator[str]:
+    """The packages of a suite that ROS's own archive has too: those of ROS, and of the tools that are made for it."""
+    for name, fields in _read_fields(sorted(lists.glob("*_Packages*"))):
+        source = fields.get("Source", name).partition(" ")[0]
+        if is_ros_source(source) or source.startswith(_ROS_TOOLS):
+            yield from (name, *_parse_relations(fields.get("Provides", "")))
 
 
 def _read_fields(indices: Iterable[Path]) -> Iterator[tuple[str, dict[str, str]]]:

@@ -5,7 +5,8 @@
 FOLDER holds the unpacked Debian packages of a release that has this GCC (`dpkg-deb -x`): g++-N, libstdc++-N-dev,
 libgcc-N-dev, libc6-dev, linux-libc-dev, libcrypt-dev, libc6, libgmp10, libmpfr6, libmpc3, libisl23, libzstd1, zlib1g.
 The compiler is asked itself, header by header and under each language standard: a type counts when it is complete,
-anything else when it is declared. Only names and versions are kept.
+anything else when it is declared. Only names and versions are kept. With --onto the other GCCs of the table stay as
+they are.
 """
 
 from __future__ import annotations
@@ -302,14 +303,26 @@ def build_table(folders: dict[int, Path]) -> dict:
     return {"names": names, "gcc": found}
 
 
+def add_compilers(table: dict, before: dict) -> dict:
+    """A table with the compilers that one before it has besides. Raises ValueError where that is of other names."""
+    if table["names"] != before["names"]:
+        raise ValueError("the table before has other names; build it with all compilers")
+    gcc = {**before["gcc"], **table["gcc"]}
+    return {"names": table["names"], "gcc": {major: gcc[major] for major in sorted(gcc, key=int)}}
+
+
 def _main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folders", nargs="+", metavar="GCC=FOLDER")
     parser.add_argument("--output", type=Path, default=DATA)
+    parser.add_argument("--onto", action="store_true", help="keep what the table has of other GCCs")
     asked = parser.parse_args()
     folders = {int(major): Path(folder) for major, _, folder in (text.partition("=") for text in asked.folders)}
-    raw = json.dumps(build_table(folders), separators=(",", ":")).encode()
-    write_file(asked.output / "std_names.json.zst", zstandard.ZstdCompressor(level=19).compress(raw))
+    table, file = build_table(folders), asked.output / "std_names.json.zst"
+    if asked.onto:
+        table = add_compilers(table, json.loads(zstandard.ZstdDecompressor().decompress(file.read_bytes())))
+    raw = json.dumps(table, separators=(",", ":")).encode()
+    write_file(file, zstandard.ZstdCompressor(level=19).compress(raw))
 
 
 if __name__ == "__main__":

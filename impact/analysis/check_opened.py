@@ -6,6 +6,7 @@ import os
 import time
 from collections import Counter
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...edges.console import describe_unforeseen
@@ -77,7 +78,7 @@ def check_opened(
         if config.systems:
             from .systems import choose_systems
 
-            notes += choose_systems(path, config.systems, ((workspace, tree), (before.workspace, base_tree)))
+            notes += choose_systems(Path(path), config.systems, ((workspace, tree), (before.workspace, base_tree)))
         old = run_and_merge(before, chosen, settings, SourceLines(make_reader(base_tree)), crashed, jobs=options.jobs)
         now = run_and_merge(opened, chosen, settings, sources, crashed, before.workspace, options.jobs)
         found: Sequence[Finding] = mark_new(now.kept, old.kept)

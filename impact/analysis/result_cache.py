@@ -22,6 +22,7 @@ from ..model.workspace import Workspace
 from ..rules.rule import Diagnostic
 from ..source_keys import compute_code_stamp
 from ..targets.changes import index_uses
+from ..targets.providers.compiled import load_compiled
 from ..targets.surface.fields import load_fields
 from ..targets.surface.store import load_shipped
 from ..targets.tables import compute_data_stamp
@@ -51,8 +52,9 @@ def load_tracked_names(store: Store) -> Watched:
         with contextlib.suppress(msgspec.MsgspecError):
             return _unpack_tracked(data)
     names = watch.load_watched()
-    # The table of fields, the surfaces and the uses are read from files of their own, where they are asked.
-    bare = structs.replace(names, fields=None, surfaces=None, uses=None)
+    # The table of fields, the surfaces, the compiled names and the uses are read from files of their own, where they
+    # are asked.
+    bare = structs.replace(names, fields=None, surfaces=None, compiled=None, uses=None)
     store.remember("watched", encode_rows([(name, bare)]))
     return names
 
@@ -61,7 +63,9 @@ def load_tracked_names(store: Store) -> Watched:
 def _unpack_tracked(data: bytes) -> Watched:
     """The names as they were stored. What is derived from them is made once in a process. Raises MsgspecError."""
     known = msgspec.msgpack.decode(data, type=Watched)
-    return structs.replace(known, fields=load_fields(), surfaces=load_shipped(), uses=index_uses)
+    return structs.replace(
+        known, fields=load_fields(), surfaces=load_shipped(), compiled=load_compiled, uses=index_uses
+    )
 
 
 def make_results_key(view: TargetView, rules: Iterable[str], group: Iterable[str]) -> bytes:

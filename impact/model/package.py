@@ -38,6 +38,7 @@ from ..facts.searches import SearchedCpp, WordUse
 from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, Rows, UsageTable
 from ..facts.words import mentions
+from ..targets.providers.compiled import CompiledNames
 from ..targets.providers.message_headers import parse_type
 from ..targets.providers.standard import list_own_names
 from ..targets.surface.fields import Fields
@@ -438,6 +439,9 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     # What controllers ask for of it.
     claims: tuple[InterfaceClaim, ...] = ()
     branched: tuple[BranchedUse, ...] = ()
+    # Files that targets compile, each with what it surely uses of libraries that need a link: functions that it calls
+    # and classes of which it makes objects.
+    compiled: tuple[tuple[str, tuple[str, ...]], ...] = ()
 
 
 # What no other package is asked about but one that has to do with it, see Workspace.groups: what its code says.
@@ -447,7 +451,7 @@ _INWARD = {
     if field.name in {
         "includes", "imports", "needed_headers", "reaches", "inner", "written_inner", "syntax", "allows", "problems",
         "uses", "members", "python_api", "cpp_api", "unresolved_receivers", "undefined", "own_calls", "unsearched",
-        "unincluded", "undeclared", "settings", "testing", "python_offer", "values", "errors",
+        "unincluded", "undeclared", "settings", "testing", "python_offer", "values", "errors", "compiled",
         "lost_overrides", "abstract", "claims", "branched",
     }
 }  # fmt: skip
@@ -514,8 +518,8 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
     """The names that rules ask for: bare words, qualified names, heads of qualified names, Python names, and for names
     of the standard library the headers that offer them. modules: labels and patterns of uses in Python, by the
     package that is imported. fields: the table of interfaces. surfaces: what versions of packages offer, as
-    surface_store.Surfaces. parameters: labels and patterns of uses in files of parameters. uses: labels and patterns of
-    uses in C++ by a word of each, read when they are asked for."""
+    surface_store.Surfaces. compiled: gives the names that need a link. parameters: labels and patterns of uses in files
+    of parameters. uses: labels and patterns of uses in C++ by a word of each, read when they are asked for."""
 
     words: frozenset[str] = frozenset()
     qualified: frozenset[str] = frozenset()
@@ -525,6 +529,7 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
     version: str = ""
     fields: Fields | None = None
     surfaces: Any = None
+    compiled: Callable[[], CompiledNames] | None = None
     parameters: list[tuple[str, Pattern]] = []
     uses: Callable[[], Mapping[str, Sequence[tuple[str, Pattern]]]] | None = None
 
@@ -813,6 +818,7 @@ class PackageJoin:
             settings=tuple(self.list_settings(parameters, launches)),
             values=tuple(self.list_values(parameters, launches)),
             errors=tuple(self.list_errors(roles)),
+            compiled=tuple(self.list_compiled(roles)),
             distros=tuple(distros),
             requirements=tuple(requirements),
             unsearched=tuple(self.list_unsearched(roles)),
@@ -1261,6 +1267,25 @@ class PackageJoin:
             for use in facts.errors if facts is not None and targets else ():
                 around = conditions + self.macros.resolve_conditions(use.conditions, targets)
                 yield NameUse(use.text, At(path, use.line, use.column), role, public, "cpp", around, targets)
+
+    def list_compiled(self, roles) -> Iterator[tuple[str, tuple[str, ...]]]:
+        """As LinkedPackage.compiled."""
+        for path, (_, _, targets, _) in roles.items() if self.watched.compiled is not None else ():
+            facts = self.cpp.get(path)
+            if facts is None or not targets:
+                continue
+            known = self.watched.compiled()
+            made = {*facts.variables, *facts.made}
+            found = {
+                name.text
+                for name in facts.qualified
+                if not name.conditions
+                and (name.text in known.functions or (name.text in known.classes and name.text in made))
+            }
+            if not known.words.isdisjoint(words := facts.words.split(" ")):
+                found.update(known.words.intersection(words).difference(facts.defined))
+            if found:
+                yield path, tuple(sorted(found))
 
     def _brings_into_std(self, path: str, label: str) -> bool:
         """Whether a file, or a header of the package that it reaches, adds a namespace of the package to `std` in which

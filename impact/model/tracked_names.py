@@ -8,6 +8,7 @@ import msgspec
 
 from ..facts.usage import Pattern
 from ..targets.changes import compute_uses_stamp, index_uses, load_rows, load_transitive, load_uses
+from ..targets.providers.compiled import compute_compiled_stamp, load_compiled
 from ..targets.providers.includes import load_offered
 from ..targets.providers.library import OPENCV_FUNCTIONS
 from ..targets.providers.standard import index_headers
@@ -68,11 +69,13 @@ def load_watched() -> Watched:
                 compute_uses_stamp(),
                 fields.version,
                 load_shipped().stamp,
+                compute_compiled_stamp(),
             )
         ).encode()
     ).hexdigest()
     return Watched(
         *(frozenset(words), frozenset(qualified), frozenset(python), headers, modules, version, fields, load_shipped()),
+        compiled=load_compiled,
         parameters=parameters,
         uses=index_uses,
     )

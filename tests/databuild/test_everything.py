@@ -68,7 +68,7 @@ def test_a_step_that_fails_blocks_those_that_read_what_it_makes(sources, tmp_pat
     sources.write_text('[lists]\n"debian bookworm" = "lists"\n[cmake]\nmodules = ["cmake/Modules"]\n')
     found = {one.step: one for one in build_everything(sources, tmp_path / "data", tmp_path / "work")}
     assert {name: one.outcome for name, one in found.items() if one.outcome != "left"} == {
-        "providers": "failed", "apt": "blocked", "sonames": "failed", "find-modules": "made",
+        "providers": "failed", "apt": "blocked", "archive": "blocked", "sonames": "failed", "find-modules": "made",
     }  # fmt: skip
     assert "no Contents or no Packages index" in " ".join(found["providers"].said)
     assert found["apt"].said == ("`providers` failed",)

@@ -12,7 +12,7 @@ MANIFEST = (
     "<buildtool_depend>catkin</buildtool_depend><depend>roscpp</depend><depend>tf</depend><depend>laser_geometry</depend>"
     "<depend>image_transport</depend><depend>plough_tools</depend></package>"
 )
-LISTENS = "#include <tf/transform_listener.h>\nint main() { tf::TransformListener listener; }\n"
+LISTENS = "#include <tf/transform_listener.h>\nint main()\n{\n  tf::TransformListener listener;\n}\n"
 
 
 def told(folder: Path, cmake: str, target: str = "noetic", tools: str = "", **sources: str) -> list[tuple[str, str]]:

@@ -35,7 +35,7 @@ def test_errors_are_read():
             "namespace pcl { template <class... RiT> struct PointCloud",
         ),
         ((7, 11, "no type named 'Mode' in namespace 'vendor'"), "namespace vendor { struct Mode : ri::Anything"),
-        ((2, 11, "no member named 'open' in namespace 'vendor'"), "ri::Anything open(RiA &&...)"),
+        ((2, 11, "no member named 'open' in namespace 'vendor'"), "ri::Anything open(RiA &&...a)"),
         ((6, 18, "no member named 'RED' in namespace 'vendor'"), "inline constexpr int RED ="),
         ((7, 31, "no member named 'AUTO' in namespace 'vendor'"), "inline ri::Anything AUTO;"),
         ((2, 3, "use of undeclared identifier 'vendor'"), "namespace vendor { }"),
@@ -111,3 +111,20 @@ def test_macros_come_first():
 def test_nothing_is_made_up(row):
     table, new = learn(row, is_own=lambda scope, name: name == "Own")
     assert not new and not table.list_names()
+
+
+def test_a_name_that_the_code_declares_itself_is_taken_back():
+    table, new = learn((7, 3, "unknown type name 'Mode'"), (7, 11, "no type named 'Mode' in namespace 'vendor'"))
+    assert new and table.list_names() == ["Mode", "vendor::Mode"]
+    text = "/ws/a.cpp:9:7: error: typedef redefinition with different types ('vendor::Mode' vs 'Mode')"
+    assert not table.remove_names(parse_errors("/ws/a.cpp:9:7: error: redefinition of 'Other'"))
+    assert table.remove_names(parse_errors(text))
+    assert table.list_names() == ["vendor::Mode"]
+    assert not table.learn(parse_errors("/ws/a.cpp:7:3: error: unknown type name 'Mode'"))
+
+
+def test_what_is_called_of_an_object_is_no_type():
+    table = StubTable(lambda path, line: "  solver->Solve(x);" if line == 1 else "vendor::Solver *solver;")
+    assert table.learn(parse_errors("/ws/a.cpp:2:9: error: no type named 'Solver' in namespace 'vendor'"))
+    assert table.learn(parse_errors("/ws/a.cpp:1:11: error: no member named 'Solve' in 'vendor::Solver'"))
+    assert "static ri::Anything Solve(RiB &&...a)" in table.render()

@@ -3,7 +3,7 @@
 import pytest
 from ir_programs import collect_outcomes, compile_program, explore_entry, needs_clang, read_expected
 
-PROGRAMS = ("first_callbacks", "crashes", "exceptions", "structures", "published")
+PROGRAMS = ("first_callbacks", "crashes", "exceptions", "structures", "published", "foreign")
 CASES = [(name, entry) for name in PROGRAMS for entry in read_expected(name)]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import posixpath
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -48,7 +49,7 @@ _MOST_KNOWN = 24
 # Calls that give what they are called on, or their first argument, as a string.
 _SAME = frozenset(
     ("c_str", "str", "as_string", "string_value", "value", "get_parameter_value", "strip", "lstrip", "rstrip", "data",
-     "get_value", "to_string", "as_int", "as_bool", "as_double")
+     "get_value", "to_string", "as_int", "as_bool", "as_double", "as_string_array", "string_array_value")
 )  # fmt: skip
 _OF_FIRST = frozenset(("resolveName", "resolve_name", "remap_name", "resolve", "string", "str", "String", "move",
                        "forward", "ParameterValue", "expand_topic_or_service_name", "resolve_topic_name",
@@ -342,6 +343,13 @@ class FlowValues:
                 yield joined._replace(text=str(sum(int(one.text or "") for one in row)))
             elif numbers:
                 yield FlowValue(None, "unresolved", "whether numbers are counted is not followed")
+            elif value.text == "%":
+                yield FlowValue(None, "unresolved", "what `%` makes of it is not followed")
+            elif value.text == "/":
+                # Of paths, where one that begins with a `/` stands alone.
+                joined = _join(row)
+                texts = [one.text or "" for one in row]
+                yield joined if joined.text is None else joined._replace(text=posixpath.join(*texts))
             else:
                 yield _join(row)
 
@@ -528,7 +536,23 @@ class FlowValues:
                     for argument in call.arguments[:1]:
                         yield from self._evaluate(argument, fn, call.line, (*seen, variable))
                 return
-        yield FlowValue(None, "unresolved", f"an element of `{value.text or value.kind}`")
+        listed = list(self._list_given_elements(value, fn, line, seen))
+        yield from listed or [FlowValue(None, "unresolved", f"an element of `{value.text or value.kind}`")]
+
+    def _list_given_elements(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
+        """The elements of a list of texts that a launch gives to a parameter; nothing where it may be another list."""
+        if not self.settings or value.kind not in ("name", "call") or len(seen) > _FAR:
+            return
+        found = list(self._evaluate(value, fn, line, (*seen, ("elements", fn, value.text))))
+        given = [one for one in found if one.how == "launch" and one.text is not None]
+        if len(given) != 1 or any(one.beside for one in found):
+            return
+        try:
+            listed = ast.literal_eval(given[0].text or "")
+        except (ValueError, SyntaxError, MemoryError, RecursionError):
+            return
+        if isinstance(listed, list) and all(isinstance(each, str) for each in listed):
+            yield from (given[0]._replace(text=each) for each in listed)
 
     def _evaluate_name(self, path: str, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         parts = split_name(path)
@@ -658,7 +682,7 @@ class FlowValues:
         return (
             (rests.is_limited is None or rests.is_limited == (within is not None))
             and (rests.is_open is None or rests.is_open == bool(self.settings or self.arguments))
-            and (not rests.idle if within is None else rests.runs <= within and rests.idle.isdisjoint(within))
+            and (not rests.idle if within is None else rests.runs.issubset(within) and rests.idle.isdisjoint(within))
             and (not way or rests.free.isdisjoint(way))
             and (not rests.ways or all(way.get(fn) is call for fn, call in rests.ways.items()))
             and (not made or rests.unmade.isdisjoint(made))

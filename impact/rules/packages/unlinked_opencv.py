@@ -62,7 +62,7 @@ def unlinked_opencv(view: TargetView, package: Package):
             continue
         call = next((use for use in calls if use.at.path in target.sources), None)
         if call is not None and view.target.ros == 2:
-            if not is_brought(view, package, target.name, "opencv2/core.hpp", "opencv", mistaken=False):
+            if not is_brought(view, package, target.name, "opencv2/core.hpp", ("opencv",), mistaken=False):
                 yield from _diagnose(package, target.name, call)
                 return
             continue

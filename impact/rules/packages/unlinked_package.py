@@ -1,44 +1,45 @@
-"""unlinked-package: a target compiles headers of a package and links nothing that brings its library.
+"""unlinked-package: a target uses what is compiled into a package's library and links nothing that brings it.
 
 What it does
-    Reports programs, and shared libraries that are installed or exported, which include a client library (roscpp,
-    rclcpp) and are linked to nothing, and in ROS 1 programs whose own sources compile headers of a library which no
-    component that they are linked to exports.
+    Reports programs, and shared libraries that are installed or exported, which call a function or make an object of a
+    class that is compiled into the library of a package (`ros::init`, `rclcpp::spin`) and are linked to nothing; in
+    ROS 1 also programs that are linked to other components, none of which exports that library.
 
 Why it breaks
     The linker reports undefined references; for a shared library it does where the library is used.
 
 Severity
-    error for programs that include a client library; warning otherwise, since a program may not use what it includes.
+    error for programs that are linked to nothing; warning otherwise.
 
 Example
-    add_executable(node src/node.cpp)           # which includes ros/ros.h
+    add_executable(node src/node.cpp)           # which calls ros::init()
 
 Use instead
     add_executable(node src/node.cpp)
     target_link_libraries(node ${catkin_LIBRARIES})
 
 Not reported
-    Headers that are templates alone; targets that are linked to something of which it cannot be seen what it brings.
+    What is inline or a template in a header; targets that are linked to something of which it cannot be seen what it
+    brings.
 """
 
 from collections.abc import Iterator
 
 from ...model.cmake.build import is_for_tests
 from ...model.cmake.catkin_links import CatkinExports, find_linked_packages, list_linked
-from ...model.package import IncludeUse
 from ...targets.platform import strip_separators
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
+from .compiled_uses import find_package_include, list_package_uses
 
 
 @rule(
     group="missing-find-package",
     texts={
         "client library": Text(
-            "`{target}` includes `{header}` but links nothing", "target_link_libraries({target} {item})"
+            "`{target}` uses `{name}` but links nothing", "target_link_libraries({target} {item})"
         ),
         "unlinked": Text(
-            "`{target}` compiles `{header}` but does not link `{subject}`",
+            "`{target}` uses `{name}` of `{header}` but does not link `{subject}`",
             "add `{subject}` to find_package(catkin REQUIRED COMPONENTS ...) and link ${{catkin_LIBRARIES}}",
         ),
     },
@@ -50,12 +51,9 @@ def unlinked_package(view: TargetView, package: Package):
         yield from _list_unlinked(view, package)
 
 
-# Headers of client libraries, whose compiled part every program needs that includes them.
-_CLIENTS = {"ros/ros.h": ("roscpp", "${catkin_LIBRARIES}"), "rclcpp/rclcpp.hpp": ("rclcpp", "rclcpp::rclcpp")}
-
-
 def _list_without_client(view: TargetView, package: Package):
-    """Programs, and shared libraries for others, that include a client library and are given nothing to link."""
+    """Programs, and shared libraries for others, that use what is compiled into a library of a package, and are given
+    nothing to link."""
     build = package.build
     if build.unresolved or build.links:
         return
@@ -68,21 +66,30 @@ def _list_without_client(view: TargetView, package: Package):
         if (t.kind == "executable" or (t.kind == "library" and not t.static and t.name in offered))
         and t.name not in linked and t.sources and view.is_sure(t.conditions)
     }  # fmt: skip
-    for include in package.linked.includes if programs else ():
-        client, item = _CLIENTS.get(include.path, ("", ""))
-        if not client or client in view.workspace.packages or not view.is_sure(include.conditions):
-            continue
-        if include.role != "build":
-            continue  # such as a test's program that `make all` leaves out
-        for name in include.targets:
-            target = programs.get(name)
-            # A library may have got the header by one that it uses for a type alone.
-            if target is None or (target.kind == "library" and include.at.path not in target.sources):
-                continue
-            del programs[name]
-            data = {"target": name, "header": include.path, "item": item}
+    if not programs:
+        return
+    compiling = dict(package.linked.source_targets)
+    for path, owner, name in list_package_uses(view, package):
+        for place in compiling.get(path, ()):
+            target = programs.get(place)
+            if target is None or (target.kind == "library" and path not in target.sources):
+                continue  # a library may have got the header by one that it uses for a type alone
+            include = find_package_include(view, package, path, place, owner)
+            if include is None or include.role != "build":
+                continue  # such as a test's program that `make all` leaves out
+            del programs[place]
+            data = {"target": place, "name": name, "item": _find_item(view, owner)}
             doubts = () if target.kind == "executable" else (Doubt.DISTURBS,)
-            yield Diagnostic(target.at, client, package.name, data, "client library", doubts)
+            yield Diagnostic(target.at, owner, package.name, data, "client library", doubts)
+
+
+def _find_item(view: TargetView, owner: str) -> str:
+    """What links a package: a target that it exports, or else its variable."""
+    if view.target.ros == 1:
+        return "${catkin_LIBRARIES}"
+    offer = view.offers.find_package(owner)
+    exported = [target.name for target in offer.build.targets if "::" in target.name] if offer is not None else []
+    return exported[0] if exported else f"${{{owner}_TARGETS}}"
 
 
 def _list_unlinked(view: TargetView, package: Package) -> Iterator[Diagnostic]:
@@ -93,13 +100,11 @@ def _list_unlinked(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     if build.unresolved or any("$" in f.name for f in build.found):
         return
     exported = CatkinExports(view)
-    includes: dict[str, list[IncludeUse]] = {}
-    for include in package.linked.includes:
-        if include.role == "build" and view.is_sure(include.conditions):
-            for name in include.targets:
-                includes.setdefault(name, []).append(include)
+    used: dict[str, list[tuple[str, str, str]]] = {}
+    for path, owner, name in list_package_uses(view, package):
+        used.setdefault(path, []).append((path, owner, name))
     seen = set()
-    for target in build.targets:
+    for target in build.targets if used else ():
         if target.kind != "executable" or is_for_tests(target.conditions) or not view.is_sure(target.conditions):
             continue
         linked = list_linked(package, target.name)
@@ -109,40 +114,15 @@ def _list_unlinked(view: TargetView, package: Package) -> Iterator[Diagnostic]:
         if brought is None:
             continue
         words = [strip_separators(item) for item in linked]
-        for include in includes.get(target.name, ()):
-            if not include.path.startswith(_COMPILED) or include.at.path not in target.sources:
-                continue  # a header may be included for what another source uses
-            providers = view.find_header(include.path)
-            if len(providers) != 1 or providers[0].kind != "ros" or not providers[0].sure:
+        for path, owner, name in (use for source in target.sources for use in used.get(source, ())):
+            if owner in brought or owner in seen:
                 continue
-            name = providers[0].name
-            if name in brought or name in seen or name == package.name:
+            include = find_package_include(view, package, path, target.name, owner)
+            if include is None or include.role != "build":
                 continue
-            libraries = exported.list_libraries(name)
-            if not libraries or any(strip_separators(lib) in word for lib in (*libraries, name) for word in words):
+            libraries = exported.list_libraries(owner)
+            if not libraries or any(strip_separators(lib) in word for lib in (*libraries, owner) for word in words):
                 continue
-            seen.add(name)
-            data = {"target": target.name, "header": include.path}
-            yield Diagnostic(include.at, name, package.name, data, "unlinked", (Doubt.INCOMPLETE,))
-
-
-# Headers of classes and functions that stand in a library, so that a program that uses them is linked to it. Headers
-# that are templates, or inline, are left out: who includes those may do without the library. Source: the packages'
-# sources, in which the constructors and functions of these stand in a .cpp file. Stored surfaces tell which functions
-# are inline, and not which ones of a header a program is sure to use: most of these headers have some that are inline.
-_HEADERS = """
-    camera_info_manager/camera_info_manager.h control_toolbox/pid.h controller_manager/controller_manager.h
-    costmap_2d/costmap_2d_ros.h cv_bridge/cv_bridge.h eigen_conversions/eigen_kdl.h
-    eigen_conversions/eigen_msg.h geometric_shapes/shape_operations.h image_geometry/
-    image_transport/image_transport.h interactive_markers/interactive_marker_server.h
-    interactive_markers/menu_handler.h kdl_conversions/kdl_msg.h kdl_parser/kdl_parser.hpp
-    laser_geometry/laser_geometry.h map_server/image_loader.h moveit/move_group_interface/move_group_interface.h
-    moveit/planning_scene/planning_scene.h moveit/planning_scene_monitor/planning_scene_monitor.h
-    moveit/robot_model_loader/robot_model_loader.h moveit/robot_state/robot_state.h nodelet/loader.h
-    resource_retriever/retriever.h robot_state_publisher/robot_state_publisher.h ros/package.h ros/ros.h
-    rosbag/bag.h rosbag/view.h srdfdom/model.h tf/transform_broadcaster.h tf/transform_listener.h
-    tf2_ros/buffer.h tf2_ros/static_transform_broadcaster.h tf2_ros/transform_broadcaster.h
-    tf2_ros/transform_listener.h tf_conversions/tf_eigen.h tf_conversions/tf_kdl.h topic_tools/shape_shifter.h
-    urdf/model.h
-"""
-_COMPILED = tuple(_HEADERS.split())
+            seen.add(owner)
+            data = {"target": target.name, "name": name, "header": include.path}
+            yield Diagnostic(include.at, owner, package.name, data, "unlinked", (Doubt.INCOMPLETE,))

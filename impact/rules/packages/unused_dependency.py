@@ -17,32 +17,15 @@ Use instead
     A manifest without it.
 
 Not reported
-    Metapackages, build tools, message runtimes, `*_vendor` packages, dependencies of packages with unresolved CMake.
+    Metapackages; released packages of which it is not known what they offer, that have nothing to include or import
+    (build tools, message runtimes, vendored libraries), or that have programs, plugins or launch files; what is asked
+    for at run time alone, unless it has interfaces; dependencies of packages with unresolved CMake.
 """
 
-from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
-from .used_names import list_used_names, shows_uses
+from collections.abc import Collection
 
-# How names of packages begin or end that are used by what is not read: build tools, programs that people start, and
-# what generated code needs.
-_SILENT = (
-    "_vendor",
-    "_runtime",
-    "_generators",
-    "message_generation",
-    "message_runtime",
-    "ament_",
-    "rosidl",
-    "python",
-    "ros2launch",
-    "launch",
-    "rmw",
-    "roslaunch",
-    "rviz",
-    "robot_state_publisher",
-    "joint_state_publisher",
-    "xacro",
-)
+from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
+from .used_names import OF_ENVIRONMENT, list_used_names, shows_uses
 
 
 @rule(
@@ -59,7 +42,7 @@ def unused_dependency(view: TargetView, package: Package):
     debian = {p.package for need in view.list_needs(package) for p in need.providers}
     found = {f.name for f in package.build.found}
     for name, kinds in view.collect_declared(package).items():
-        if name in used or not kinds & {"build", "exec"} or name.startswith(_SILENT) or name.endswith(_SILENT):
+        if name in used or not kinds & {"build", "exec"} or _may_be_used_unseen(view, name, kinds):
             continue
         if (
             name in found
@@ -72,3 +55,21 @@ def unused_dependency(view: TargetView, package: Package):
         ):
             continue
         yield Diagnostic(view.find_place(package, name), name, package.name)
+
+
+def _may_be_used_unseen(view: TargetView, name: str, kinds: Collection[str]) -> bool:
+    """Whether a use of a released package need not show in a file: it has programs, plugins or launch files, which
+    people and settings start; nothing to include or import; or libraries and modules that are asked for at run time
+    alone, and may be loaded by name."""
+    if name in view.workspace.packages or name in OF_ENVIRONMENT:
+        return False
+    offer = view.offers.find_package(name)
+    if offer is None:
+        return True
+    build, surface = offer.build, offer.history.load_surface(offer.stored)
+    if "exec" in kinds and (build.programs or build.plugins or build.launches):
+        return True
+    interfaces = surface.interfaces if surface is not None else ()
+    modules = surface.python.modules if surface is not None else ()
+    shown = (*interfaces, *((*build.headers, *modules) if "build" in kinds else ()))
+    return not shown

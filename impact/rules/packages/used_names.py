@@ -2,6 +2,9 @@
 
 from ..vocabulary import Package, TargetView
 
+OF_ENVIRONMENT = ("ros_environment", "roslib")
+"""Packages whose use is that CMake reads the environment of ROS."""
+
 
 def shows_uses(package: Package) -> bool:
     """Whether the files of a package tell what it uses: it is no metapackage, and has code or launch files."""
@@ -25,7 +28,7 @@ def list_used_names(view: TargetView, package: Package) -> frozenset[str]:
         *(item.module.split(".")[0] for item in linked.imports),
         *(use.reference.package for use in linked.references),
         *linked.named,
-        *(("ros_environment", "roslib") if any(use.kind == "environment" for use in build.uses) else ()),
+        *(OF_ENVIRONMENT if any(use.kind == "environment" for use in build.uses) else ()),
     ))  # fmt: skip
 
 

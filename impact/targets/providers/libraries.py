@@ -19,6 +19,7 @@ import msgspec
 
 from ....edges.memory import cache_method
 from ...facts.cpp.lexical import Include
+from ...facts.surface import Entity
 from ..platform import find_neighbours
 from ..surface.includes import choose_path, covers
 from ..surface.store import StoredRows, StoredSurfacesError, SurfaceHistory
@@ -114,6 +115,12 @@ class SystemLibraries:
     def _load_history(self, library: str) -> SurfaceHistory | None:
         data = self._file.query_column("SELECT data FROM package WHERE name = ?", library)
         return SurfaceHistory(library, data[0], b"") if data else None
+
+    def list_declared(self, library: str, platform: str) -> list[Entity]:
+        """What the headers of a library declare for its users on a platform that was read."""
+        data = self._file.query_column("SELECT names FROM package WHERE name = ?", library)
+        version = self.list_versions(library).get(platform, "")
+        return list(SurfaceHistory(library, data[0], b"").list_entities(version)) if data else []
 
     @cache_method
     def find_by_header(self, header: str) -> str:

@@ -6,7 +6,7 @@ remembers it.
 """
 
 import sqlite3
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
@@ -212,6 +212,17 @@ class Providers(ShippedDatabase):
             for (number,) in self.fetch(f"SELECT provider FROM {table} ORDER BY name")
             if (packages := entries[number])
         ]
+
+    def list_packages_of_names(self) -> Iterator[tuple[tuple[str, ...], int]]:
+        """For every name of the system's packages: the packages that bring it on some platform, best first, and the
+        bits of the platforms that have it."""
+        entries = {
+            number: tuple(dict.fromkeys(p.package for p in _decode(text) if p.package))
+            for number, text in self.fetch("SELECT id, entries FROM provider")
+        }
+        for table in ("header", "cmake", "pkgconfig", "module", "program"):
+            for number, bits in self.fetch(f"SELECT provider, platforms FROM {table}"):
+                yield entries[number], bits
 
     def list_cmake_platforms(self, name: str) -> tuple[str, ...]:
         """Platforms whose system packages bring a CMake configuration or find module of this name."""

@@ -5,8 +5,10 @@ import msgspec
 from ..tables import find_table
 from ..unpacked import read_table
 
+FILE = "python_modules.json"
 
-class _Modules(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+
+class Modules(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Names of modules. always: of all versions of Python 3 from 3.4 on, but for those that a later one removed. added:
     to the minor version of Python 3 that brought them. removed: by the minor version that lacks them first, each with
     what serves instead (`old=new`). python2: of Python 2.7, likewise with their homes in Python 3. not_in_2: of
@@ -21,7 +23,7 @@ class _Modules(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     private: str
 
 
-_KNOWN = read_table(find_table("python_modules.json"), _Modules)
+_KNOWN = read_table(find_table(FILE), Modules)
 _ALWAYS_3, _ADDED, _PRIVATE = frozenset(_KNOWN.always.split()), _KNOWN.added, frozenset(_KNOWN.private.split())
 _NOT_IN_2 = frozenset(_KNOWN.not_in_2.split())
 _SUCCESSORS = {

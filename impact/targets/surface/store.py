@@ -200,6 +200,12 @@ class SurfaceHistory:
         found = list_offered([HeaderSurface(near, inline=self._list_inline_namespaces(version))]) if near else ()
         return (entity for entity in found if entity.name == name)
 
+    def list_entities(self, version: str) -> Iterator[Entity]:
+        """All that a version declares in C++, as users write it; nothing for a version that is not stored."""
+        if version in self.versions:
+            near = tuple(entity for _, entity in self._iterate("entity", version, Entity))
+            yield from list_offered([HeaderSurface(near, inline=self._list_inline_namespaces(version))])
+
     @cached_property
     def _by_last(self) -> dict[str, list[Any]]:
         """The rows of what is declared in C++, by the last part of its name, with and without template arguments."""

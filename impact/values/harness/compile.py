@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 import shutil
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
@@ -17,14 +16,17 @@ from typing import NamedTuple
 from ....edges.files import read_text, write_file, write_scratch_file
 from ....edges.groups import group_pairs
 from ..outcomes import Bounds
+from .cuts import SourceCuts
 from .facade import RUNTIME, find_facade, list_folders
 from .interfaces import KnownInterfaces, write_headers
 from .precompiled import Facade, find_includes, split_dependencies
+from .sources import SourceUnit, is_optional_line
 from .stubs import CompileError, StubTable, parse_errors
 from .toolchain import (
     NO_CLANG,
     NO_COMPILER,
     NO_FUZZER,
+    NO_SANITIZER,
     CompilerRun,
     find_clang,
     find_fuzzer,
@@ -33,7 +35,7 @@ from .toolchain import (
 )
 
 _ROUNDS_OF_HEADERS = 8
-_ROUNDS_OF_STUBS = 20
+_ROUNDS_OF_STUBS = 30
 _HEADER_BYTES = 4_000_000
 _SYSTEM = ("/usr/include", "/usr/local/include")
 _HEADERS = (".h", ".hpp", ".hh", ".hxx", ".ipp", ".inl", ".tpp")
@@ -55,24 +57,6 @@ _NATIVE_FLAGS = (
 
 class CannotCompile(Exception):
     """A harness does not compile; the text is the first error, with its place."""
-
-
-@dataclass
-class SourceUnit:
-    """A translation unit. text: what is compiled; blocks: first and last line of each part of it that may be left out,
-    by name; standard: of C++, the last two digits of its year; definitions: of the preprocessor. stubs: what stands for
-    headers that are not here; missing: these headers. boost: whether our headers of Boost are used."""
-
-    name: str
-    text: str
-    blocks: dict[str, tuple[int, int]] = field(default_factory=dict)
-    standard: int = 17
-    definitions: tuple[str, ...] = ()
-    folders: tuple[str, ...] = ()
-    stubs: StubTable | None = None
-    missing: list[str] = field(default_factory=list)
-    boost: bool = True
-    dropped: dict[str, str] = field(default_factory=dict)
 
 
 class HarnessFiles(NamedTuple):
@@ -99,6 +83,8 @@ class Workshop:
         self.root, self.folder, self.definitions, self.bounds = root.resolve(), folder, definitions, bounds
         self.include = folder / "include"
         self.include.mkdir(parents=True, exist_ok=True)
+        # Headers that stand for Boost's, for the units that use them.
+        self.boost = folder / "boost"
         self._is_own, self._list_bases = is_own, list_bases
         self._folders: dict[str, None] = {}
         self._system: dict[str, None] = {}
@@ -109,6 +95,7 @@ class Workshop:
                     self._folders[str(at)] = None
         self._lines: dict[str, list[str]] = {}
         self._wanted: dict[tuple[str, bool], bool] = {}
+        self._cuts: SourceCuts | None = None
 
     # Headers
 
@@ -130,7 +117,7 @@ class Workshop:
         if header.startswith("/") or ".." in header.split("/"):
             unit.missing.append(header)
             return
-        if (self.include / header).exists():
+        if (self.include / header).exists() or (unit.boost and (self.boost / header).exists()):
             return
         key = self.definitions.find_key_of_header(header)
         if key:
@@ -143,7 +130,8 @@ class Workshop:
             return
         facade = find_facade(header, self.definitions.ros, unit.boost)
         if facade:
-            self._write({header: f"#pragma once\n#include <{facade}>\n"})
+            folder = self.boost if facade.startswith("boost/") else self.include
+            self._write({header: f"#pragma once\n#include <{facade}>\n"}, folder)
             return
         own = self._find_own(header)
         if own is not None:
@@ -169,9 +157,9 @@ class Workshop:
         first = next((path.relative_to(one).parts[0] for one in _SYSTEM if path.is_relative_to(one)), "")
         return not Path(f"/usr/share/{first}/package.xml").exists()
 
-    def _write(self, files: Mapping[str, str]) -> None:
+    def _write(self, files: Mapping[str, str], folder: Path | None = None) -> None:
         for path, text in files.items():
-            at = self.include / path
+            at = (folder or self.include) / path
             if not at.exists():
                 at.parent.mkdir(parents=True, exist_ok=True)
                 write_scratch_file(at, text.encode())
@@ -191,7 +179,9 @@ class Workshop:
                     if header.startswith("/") or not self._is_ours(header, unit):
                         continue
                     self._make_header(header, unit)
-                    found = self.include / header
+                    found = next((at for at in (self.boost / header, self.include / header) if at.is_file()), None)
+                    if found is None:
+                        continue
                 if found not in seen:
                     seen.add(found)
                     waiting.append(found)
@@ -254,10 +244,12 @@ class Workshop:
     # Compiling
 
     def _list_flags(self, unit: SourceUnit) -> list[str]:
-        folders = [str(self.include), *map(str, list_folders(self.definitions.ros))]
+        folders = [*([str(self.boost)] if unit.boost else []), str(self.include)]
+        folders += map(str, list_folders(self.definitions.ros))
         flags = ["-x", "c++", *self._list_macros(unit)]
         flags += [f"-D{each}" for each in unit.definitions]
         flags += sorted(unit.stubs.flags) if unit.stubs is not None else []
+        flags += [f"-ivfsoverlay{unit.cuts.overlay}"] if unit.cuts else []
         flags += ["-include", str(self._find_stubs(unit))]
         flags += [f"-I{each}" for each in (*folders, *unit.folders, *self._folders)]
         return [*flags, *(each for one in self._system for each in ("-isystem", one))]
@@ -275,6 +267,9 @@ class Workshop:
         return self.folder / unit.name / "ri_stubs.hpp"
 
     def _read_line(self, path: str, number: int) -> str:
+        changed = self._cuts.read_lines(path) if self._cuts is not None else None
+        if changed is not None:
+            return changed[number - 1] if 0 < number <= len(changed) else ""
         lines = self._read_lines(path)
         return lines[number - 1] if 0 < number <= len(lines) else ""
 
@@ -296,6 +291,8 @@ class Workshop:
         folder.mkdir(parents=True, exist_ok=True)
         path = folder / "harness.cpp"
         unit.stubs = StubTable(self._read_line, self._is_own, self._list_bases)
+        unit.cuts = SourceCuts(self.root, folder)
+        self._cuts = unit.cuts
         self._store(unit, path)
         self._provide_headers(unit, path)
         first: CompileError | None = None
@@ -322,9 +319,10 @@ class Workshop:
                 continue
             if unit.boost and any("/boost/" in each.path and not each.path.startswith(str(RUNTIME)) for each in errors):
                 unit.boost = False
-                self._leave_boost()
+                self._find_headers(unit, clang, path)
                 continue
-            learned = unit.stubs.learn(errors)
+            learned = unit.stubs.learn(errors) or unit.stubs.remove_names(errors)
+            learned = learned or unit.cuts.cut(run.errors)
             if not learned and own and len(own) == len(errors) and write is not None:
                 self._drop_parts(unit, own, write, path)
                 continue
@@ -334,8 +332,12 @@ class Workshop:
         raise CannotCompile(self._describe(first) if first is not None else "does not compile")
 
     def _drop_parts(self, unit: SourceUnit, errors: Sequence[CompileError], write, path: Path) -> None:
-        """Leaves the parts of a unit out that have errors."""
+        """Leaves the parts of a unit out that have errors: one line where that may be left out on its own."""
+        lines = unit.text.split("\n")
         for each in errors:
+            if each.line <= len(lines) and is_optional_line(lines[each.line - 1]):
+                unit.dropped.setdefault(lines[each.line - 1].strip(), each.text)
+                continue
             name = next((n for n, (a, b) in unit.blocks.items() if a <= each.line <= b), None)
             if name is None:
                 raise CannotCompile(self._describe(each))
@@ -344,16 +346,13 @@ class Workshop:
         unit.text, unit.blocks = made.text, made.blocks
         self._store(unit, path)
 
-    def _leave_boost(self) -> None:
-        shutil.rmtree(self.include / "boost", ignore_errors=True)
-
     def _store(self, unit: SourceUnit, path: Path) -> None:
         write_scratch_file(path, unit.text.encode())
         write_scratch_file(self._find_stubs(unit), (unit.stubs or StubTable(self._read_line)).render().encode())
         self._lines.pop(str(path), None)
 
     def _check(self, unit: SourceUnit, clang: str, path: Path) -> CompilerRun:
-        flags = ("-ferror-limit=0", "-fno-caret-diagnostics", "-fno-spell-checking", "-ftemplate-backtrace-limit=1")
+        flags = ("-ferror-limit=0", "-fno-caret-diagnostics", "-fno-spell-checking", "-ftemplate-backtrace-limit=0")
         flags = (*flags, "-S", "-emit-llvm", "-MD", "-MF", "harness.d", str(path), "-o", "harness.ll")
         return self._run_clang(unit, clang, flags, path.parent)
 
@@ -394,9 +393,10 @@ class Workshop:
 
     def build_replay(self, units: Sequence[SourceUnit]) -> Path:
         """The program that replays witnesses of units that were prepared together. Raises CannotCompile."""
-        compiler = find_native_compiler()
+        is_cut = any(unit.cuts for unit in units)
+        compiler = find_native_compiler(is_cut)
         if not compiler:
-            raise CannotCompile(NO_COMPILER)
+            raise CannotCompile(NO_SANITIZER if is_cut else NO_COMPILER)
         extra = () if Path(compiler).name.startswith("clang") else ("-Wno-psabi",)
         return self._build(units, compiler, (*_NATIVE_FLAGS, *extra), RUNTIME / "native.cpp", "replay")
 
@@ -464,14 +464,19 @@ class Workshop:
         """Writes a folder from which KLEE is run as it is: the harness, its headers, a runtime and a script."""
         folder.mkdir(parents=True, exist_ok=True)
         shutil.copytree(self.include, folder / "include", dirs_exist_ok=True)
+        if unit.boost and self.boost.is_dir():
+            shutil.copytree(self.boost, folder / "include", dirs_exist_ok=True)
         for one in reversed(list_folders(self.definitions.ros)):
             shutil.copytree(one, folder / "include", dirs_exist_ok=True)
         for name in ("harness.cpp", "ri_stubs.hpp"):
             shutil.copy(self.folder / unit.name / name, folder / name)
         shutil.copy(RUNTIME / "klee.cpp", folder / "klee_runtime.cpp")
-        skipped = {f"-I{each}" for each in (self.include, *list_folders(self.definitions.ros))}
+        skipped = {f"-I{each}" for each in (self.boost, self.include, *list_folders(self.definitions.ros))}
         flags = [each for each in self._list_flags(unit) if each not in skipped and each != str(self._find_stubs(unit))]
         flags.remove("-include")
+        if unit.cuts:
+            kept = unit.cuts.write_into(folder)
+            flags = [f"-ivfsoverlay{kept}" if each == f"-ivfsoverlay{unit.cuts.overlay}" else each for each in flags]
         quoted = " ".join(f"'{each}'" for each in flags)
         script = folder / "run_klee.sh"
         lines = [

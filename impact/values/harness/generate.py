@@ -14,10 +14,15 @@ from typing import NamedTuple
 from ...model.flow.code import Fn, get_tail
 from ...model.flow.types import Cls
 from .callbacks import ClassReader, CppCallback, ObservedMember
-from .compile import SourceUnit
+from .sources import SourceUnit
 
 _NODES = ("Node", "LifecycleNode")
 _HANDLES = ("SharedPtr", "UniquePtr", "Publisher", "Subscriber", "Subscription", "NodeHandle", "mutex", "thread")
+
+
+_FRAMEWORK = re.compile(
+    r"\b(?:ros|rclcpp\w*|tf2?|tf2_ros|message_filters|image_transport|actionlib|diagnostic_updater|nodelet)::"
+)
 
 
 class HarnessEntry(NamedTuple):
@@ -64,7 +69,8 @@ class HarnessWriter:
                     if block in left_out:
                         continue
                     first = len(lines) + 1
-                    lines += text.replace("RI_TAG", f"{number}_{way}{turn}").rstrip("\n").split("\n")
+                    made = text.replace("RI_TAG", f"{number}_{way}{turn}").rstrip("\n").split("\n")
+                    lines += [_leave_line(each) if each.strip() in left_out else each for each in made]
                     blocks[block] = (first, len(lines))
                     names.append(entry)
                     entries.setdefault(number, []).append(HarnessEntry(entry, way, callback))
@@ -274,6 +280,7 @@ class HarnessWriter:
             if base:
                 lines.append(f"  {base}")
             lines += [f"  ri::make_member(node->{each.name});" for each in members]
+            lines += [f"  ri::forget(node->{each.name});" for each in members if not _is_of_framework(each)]
             lines += [f"  ri::set_member(node->{each.name}, {each.value});" for each in members if each.value]
             lines += _write_state(members, "node->", "this.", every=True)
             call = f"node->{get_tail(fn.name)}"
@@ -343,14 +350,26 @@ def spell_type(message_type: str, kind: str, ros: int) -> str:
     return f"::{package}::{name}" if ros == 1 else f"::{package}::{folder}::{name}"
 
 
+def _leave_line(line: str) -> str:
+    """What stands for a line that is left out. A member that cannot be watched may be changed without being seen."""
+    return "  ri::lose_member();" if "watch_member(" in line else ""
+
+
+def _is_of_framework(member: ObservedMember) -> bool:
+    """Whether a member is of a class of the facades, which works without its constructor's arguments."""
+    return _FRAMEWORK.search(member.type) is not None
+
+
 def _write_state(members: Sequence[ObservedMember], object_: str, prefix: str, every: bool) -> list[str]:
     """every: the constructor did not run, so that any member may have any value and publishers are made."""
     lines = []
+    if not every:
+        lines += [f"  ri::forget_cut({object_}{each.name});" for each in members if not _is_of_framework(each)]
     for each in members:
         name = each.name
         make = "true" if every else "false"
         lines.append(f'  ri::name_member({object_}{name}, "{get_tail(name)}", {make});')
-        if each.is_state or (every and not each.value):
+        if each.is_state:
             lines.append(f'  ri::fill_state({object_}{name}, "{prefix}{get_tail(name)}");')
     lines += [f'  ri::watch_member({object_}{e.name}, "{get_tail(e.name)}");' for e in members if e.is_read]
     return lines

@@ -280,10 +280,11 @@ def complete_frames(errors: str, program: Path) -> str:
     offsets = list(dict.fromkeys(found["offset"] for found in bare))
     run = run_compiler([tool, "-a", "-i", "-e", str(program), *offsets], program.parent, 60)
     lines: dict[int, list[str]] = {}
+    rows: list[str] = []
     for row in run.out.splitlines():
         if row.startswith("0x"):
             rows = lines.setdefault(int(row, 16), [])
-        elif lines and _HAS_LINE.match(row):
+        elif _HAS_LINE.match(row):
             rows.append(row.partition(" (")[0])
     for found in bare:
         known = [f"{found['start']} {row}" for row in lines.get(int(found["offset"], 16), ())]

@@ -54,6 +54,7 @@ class StubTable:
         # Class to its members and what these are: `member`, `function`, `type`, `constant`, `number`.
         self._members: dict[str, dict[str, str]] = {}
         self.flags: set[str] = set()
+        self._banned: set[tuple[str, str]] = set()
 
     def __bool__(self) -> bool:
         return bool(self._names or self._members)
@@ -87,6 +88,23 @@ class StubTable:
                 return True
         return False
 
+    def remove_names(self, errors: Sequence[CompileError]) -> bool:
+        """Takes names back that the code declares itself, as errors say; these are not made again. Gives whether
+        there were any."""
+        found = False
+        for each in errors:
+            text, quoted = each.text, _QUOTED.findall(each.text)
+            if not quoted or not re.search(r"redefinition (?:of|with different)|is ambiguous|redeclared", text):
+                continue
+            names = [key for key in self._names if key[1] == _strip_arguments(quoted[0]).rpartition("::")[2]]
+            written = text.rpartition(" vs ")[2]
+            exact = [key for key in names if f"'{'::'.join(filter(None, key))}'" in written]
+            for key in exact or names:
+                del self._names[key]
+                self._banned.add(key)
+                found = True
+        return found
+
     def _learn_one(self, error: CompileError) -> bool:
         text, quoted = error.text, _QUOTED.findall(error.text)
         if _is_of_macro(error):
@@ -113,6 +131,8 @@ class StubTable:
             return self._add_type(
                 quoted[1] if len(quoted) > 1 else "", name, "template", len(quoted) < 2 or "in namespace" in text
             )
+        if text.startswith("cannot refer to type member") and len(quoted) > 1:
+            return self._make_function(name)
         if text.startswith("no member named") and len(quoted) > 1:
             if "in namespace" in text or "in the global namespace" in text:
                 return self._add_name(quoted[1], name, self._guess(error))
@@ -130,6 +150,13 @@ class StubTable:
         if "template template" in text or "template argument for template type parameter must be a type" in text:
             return False
         return False
+
+    def _make_function(self, name: str) -> bool:
+        """What is called of an object is no type."""
+        owners = [each for each, rows in self._members.items() if rows.get(name) == "type"]
+        for owner in owners:
+            self._members[owner][name] = "function"
+        return bool(owners)
 
     def _learn_number(self, error: CompileError) -> bool:
         """What a `switch` asks for is a number."""
@@ -195,6 +222,8 @@ class StubTable:
         if rest.startswith("<") and not re.match(r"<\s*[\w.()+\-]+\s*[;)&|]", rest) and ">" in rest:
             behind = rest[rest.rindex(">") + 1 :].lstrip()
             return "function" if behind.startswith("(") and not name[:1].isupper() else "template"
+        if rest.startswith("(") and re.search(r"(?:->|\.)$", before):
+            return "function"
         if rest.startswith("("):
             return "type" if name[:1].isupper() and not name.isupper() else "function"
         if (
@@ -218,6 +247,7 @@ class StubTable:
         if (
             scope.partition("::")[0] in _OWN
             or not _NAME.fullmatch(name)
+            or (scope, name) in self._banned
             or (kind != "namespace" and self._is_own(scope, name))
         ):
             return False
@@ -266,8 +296,8 @@ class StubTable:
         if kind == "namespace":
             return f"namespace {name} {{ }}"
         if kind == "function":
-            body = f'{{ ri::unknown("{full}"); return {{}}; }}'
-            return f"template <class... RiT, class... RiA> ri::Anything {name}(RiA &&...) {body}"
+            body = f'{{ ri::foreign("{full}", a...); return {{}}; }}'
+            return f"template <class... RiT, class... RiA> ri::Anything {name}(RiA &&...a) {body}"
         if kind == "variable":
             return f"inline ri::Anything {name};"
         if kind == "constant":
@@ -289,8 +319,8 @@ class StubTable:
                     else f"struct {name} : ri::Anything {{ RI_STAND_IN({name}) }};"
                 )
             elif kind == "function":
-                body = f'{{ ri::unknown("{owner}::{name}"); return {{}}; }}'
-                rows.append(f"template <class... RiM, class... RiB> static ri::Anything {name}(RiB &&...) {body}")
+                body = f'{{ ri::foreign("{owner}::{name}", a...); return {{}}; }}'
+                rows.append(f"template <class... RiM, class... RiB> static ri::Anything {name}(RiB &&...a) {body}")
             elif kind == "constant":
                 rows.append(f"static constexpr int {name} = {_make_number(owner + name)};")
             elif kind == "number":

@@ -15,6 +15,9 @@ OLDEST = 15
 """Of clang: from this version on, pointers in LLVM IR have no types."""
 NO_CLANG = f"clang {OLDEST} or newer is needed to explore C++ callbacks: `sudo apt install clang` or clang-16, or newer"
 NO_COMPILER = "a C++ compiler is needed to replay: `sudo apt install g++`"
+NO_SANITIZER = (
+    "clang's sanitizers are needed to replay sources of which parts are left out: `sudo apt install libclang-rt-dev`"
+)
 NO_FUZZER = "libFuzzer is needed for --fuzz: `sudo apt install clang libclang-rt-dev`"
 _VERSION = re.compile(r"clang version ([0-9]+)")
 _SECONDS = 180
@@ -38,9 +41,10 @@ def find_clang() -> str:
 
 
 @cache
-def find_native_compiler() -> str:
-    """The compiler that replays are built with: g++, whose sanitizers come along, else clang++; empty for none."""
-    for name in ("g++", *_list_clangs()):
+def find_native_compiler(of_clang: bool = False) -> str:
+    """The compiler that replays are built with: g++, whose sanitizers come along, else clang++; empty for none.
+    of_clang: only clang++ will do."""
+    for name in (*(() if of_clang else ("g++",)), *_list_clangs()):
         path = shutil.which(name)
         if path and _links(path, ("-fsanitize=address,undefined",), "int main() { return 0; }"):
             return path

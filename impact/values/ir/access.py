@@ -110,7 +110,11 @@ def load(run: Machine, state: State, pointer: Any, type_: IrType, alignment: int
     pointer = require_access(run, state, pointer, type_.size)
     memory_object = state.objects[pointer.object]
     if isinstance(pointer.offset, int):
-        return read_scalar(run, state, memory_object, pointer.offset, type_)
+        value = read_scalar(run, state, memory_object, pointer.offset, type_)
+        if value is UNDEFINED and type_.is_pointer and state.has_begun and state.has_forgotten:
+            value = run.make_any_address(state)
+            write_scalar(run, state, pointer.object, pointer.offset, type_.size, value)
+        return value
     offsets = list_offsets(run, state, pointer, type_.size, alignment)
     values = [read_scalar(run, state, memory_object, offset, type_) for offset in offsets]
     found = [(offset, value) for offset, value in zip(offsets, values, strict=True) if value is not UNDEFINED]

@@ -29,7 +29,7 @@ from ..outcomes import (
     Reaction,
     UnknownFunction,
 )
-from .access import load, read_scalar, require_access, store
+from .access import fill_cells, load, read_scalar, require_access, store
 from .exceptions import fill_standard_table, find_handler, get_raised, is_standard_exception, unwind
 from .layout import ArrayType, IrType, StructureType, UnknownSizeError, get_integer_type
 from .memory import AddressMap, MemoryObject, interpret_raw, read_raw
@@ -212,7 +212,7 @@ class Executor:
 
     def make_any_byte(self, bits: int) -> z3.BitVecRef:
         assert self.current is not None
-        return self.make_any(self.current, "memory that nobody wrote", bits)
+        return self.make_any(self.current, _UNWRITTEN, bits)
 
     def make_any_scalar(self, state: State, what: str, type_: IrType) -> Any:
         """Any value of a scalar type; ends the way for one that is an address."""
@@ -223,6 +223,15 @@ class Executor:
             kind = InputKind.FLOAT64 if type_.bits == 64 else InputKind.FLOAT32
             return read_float_bits(self.make_any(state, what, type_.bits, kind), type_.bits)
         raise self.make_unknown(what)
+
+    def make_any_address(self, state: State) -> Pointer:
+        """An address that is not known: none, or that of an object of its own that nothing is known of. What is written
+        there is not seen to do nothing."""
+        if self.decide(state, self.make_any(state, _UNWRITTEN, 8) == 0):
+            return NULL
+        if _OTHER not in state.notes:
+            state.notes = (*state.notes, _OTHER)
+        return self.add_object(state, _OTHER_SIZE, "other", _OTHER)
 
     def make_derived(
         self, state: State, what: str, compute: Callable[..., float], arguments: Sequence[Any], bits: int
@@ -378,7 +387,7 @@ class Executor:
         if value is UNDEFINED:
             if type_.is_pointer:
                 raise self.make_unknown("an address that nobody wrote is used")
-            return self.make_any_scalar(state, "memory that nobody wrote", type_)
+            return self.make_any_scalar(state, _UNWRITTEN, type_)
         return value
 
     # Conditions.
@@ -591,7 +600,7 @@ class Executor:
     def _exclude_early(self):
         """Where the harness says when the callback begins, what happened before is none of it."""
         paths = self.exploration.paths
-        if len(self.early) == len(paths):
+        if len(self.early) == len(paths) and not self.program.is_function("ri_begin"):
             return
         for number in self.early:
             path = paths[number]
@@ -797,6 +806,17 @@ class Executor:
         if result is Reaction.CRASH and not place.path:
             kind = end.crash.value if end.crash is not None else ""
             result, reason = Reaction.UNKNOWN, f"{kind} outside of the workspace's code"
+        if (
+            result is Reaction.CRASH
+            and state.has_forgotten
+            and (
+                end.crash in (CrashKind.NULL, CrashKind.DANGLING)
+                or _UNWRITTEN in assumed
+                or any(name.startswith("~foreign") for name in names)
+            )
+        ):
+            kind = end.crash.value if end.crash is not None else ""
+            result, reason = Reaction.UNKNOWN, f"{kind}, unless what is not known prevents it"
         if result in (Reaction.HANDLED, Reaction.LOG_ONLY, Reaction.IGNORED):
             place = NOWHERE
         self.exploration.paths.append(
@@ -1398,6 +1418,10 @@ class Executor:
         caller = state.get_frame()
         self.finish_instruction(state, caller, caller.get_instruction(), value)
 
+    def _is_other(self, state: State, pointer: Pointer) -> bool:
+        found = state.objects.get(pointer.object)
+        return found is not None and found.kind == "other"
+
     def leave_frame(self, state: State):
         """Takes the topmost frame away, and its variables."""
         frame = state.frames.pop()
@@ -1416,7 +1440,9 @@ class Executor:
         if not isinstance(callee, Code):
             if isinstance(callee, Pointer) and callee.object == 0:
                 raise self.make_crash(CrashKind.NULL, "a function pointer is called")
-            raise self.make_unknown("a call of what is not known to be a function")
+            if not (isinstance(callee, Pointer) and self._is_other(state, callee)):
+                raise self.make_unknown("a call of what is not known to be a function")
+            callee = Code(_OTHER_FUNCTION)
         registers = frame.registers
         arguments: list[Argument] = list(operands[1:])
         values = [
@@ -1445,7 +1471,7 @@ class Executor:
                     values[index] = self._copy_argument(state, values[index], each.copied, copies)
             self._push(state, function, values, copies)
             return
-        value = self._call_unknown(state, instruction, name, values)
+        value = self._call_unknown(state, instruction, name, values, [each.extent for each in arguments])
         self.finish_instruction(state, state.get_frame(), instruction, value)
 
     def _copy_argument(self, state: State, value: Any, type_: IrType, copies: list[int]) -> Pointer:
@@ -1460,23 +1486,42 @@ class Executor:
         state.objects[target.object].is_zeroed = content.is_zeroed
         return target
 
-    def _call_unknown(self, state: State, instruction: Instruction, name: str, values: Sequence[Any]) -> Any:
-        """A function without a body: its result is any, and so is what its arguments point to."""
+    def _call_unknown(
+        self, state: State, instruction: Instruction, name: str, values: Sequence[Any], extents: Sequence[int] = ()
+    ) -> Any:
+        """A function without a body: its result is any, and so is what its arguments point to. extents: the bytes that
+        each argument is of; where that is not known, all from there on."""
         note = f"a call of `{name}`"
         if note not in state.notes:
             state.notes = (*state.notes, note)
         if instruction.type.is_pointer or instruction.type.is_aggregate:
             raise self.make_unknown(f"{note}, which gives an address or a structure")
-        for value in values:
-            if isinstance(value, Pointer) and value.object in state.objects:
-                memory_object = state.objects[value.object]
-                if memory_object.is_live and memory_object.kind not in ("constant", "outside"):
-                    memory_object = state.take_object(value.object)
-                    memory_object.cells = {}
-                    memory_object.is_zeroed = False
+        for number, value in enumerate(values):
+            if isinstance(value, Pointer):
+                self.forget_memory(state, value, extents[number] if number < len(extents) else 0)
         if instruction.type.size == 0:
             return None
         return self.make_any_scalar(state, note, instruction.type)
+
+    def forget_memory(self, state: State, pointer: Pointer, size: int):
+        """Some bytes are any from here on; size 0: all behind the address."""
+        memory_object = state.objects.get(pointer.object)
+        if memory_object is None or not memory_object.is_live or memory_object.kind in ("constant", "outside"):
+            return
+        memory_object = state.take_object(pointer.object)
+        offset = pointer.offset
+        if not isinstance(offset, int) or not 0 <= offset <= memory_object.size:
+            memory_object.cells = {}
+            memory_object.is_zeroed = False
+            return
+        end = min(offset + size, memory_object.size) if size else memory_object.size
+        if offset == 0 and end == memory_object.size:
+            memory_object.cells = {}
+            memory_object.is_zeroed = False
+        elif memory_object.is_zeroed:
+            fill_cells(memory_object, offset, end - offset, UNDEFINED)
+        else:
+            memory_object.clear(offset, end - offset)
 
     def throw(self, state: State, raised: Raised):
         """Unwinds to who catches or cleans up."""
@@ -1495,6 +1540,10 @@ class Executor:
 
 
 _UNDECIDED: Any = object()
+_OTHER = "an object that the callback has not made"
+_OTHER_SIZE = 4096
+_OTHER_FUNCTION = "a function that is not known"
+_UNWRITTEN = "memory that nobody wrote"
 _NO_ANSWER = "the solver gave no answer in time"
 
 

@@ -234,6 +234,11 @@ def begin_callback(call: Call) -> Any:
     state = call.state
     state.has_begun = True
     state.effects = state.logs = state.sent = ()
+    # What was called before is none of the callback's, but may have changed what it works with.
+    kept = tuple(each for each in state.notes if each.startswith("a member"))
+    state.has_forgotten = state.has_forgotten or len(kept) < len(state.notes)
+    state.assumed_notes = tuple(dict.fromkeys((*state.assumed_notes, *state.notes)))
+    state.notes = kept
 
 
 @model("ri_end")
@@ -256,6 +261,29 @@ def resize_block(call: Call) -> Any:
 @model("ri_unknown")
 def end_unknown(call: Call) -> Any:
     raise call.run.make_unknown(_read_name(call, 0))
+
+
+@model("ri_cut")
+def end_cut(call: Call) -> Any:
+    if call.state.has_begun:
+        raise call.run.make_unknown(_read_name(call, 0))
+    call.state.has_forgotten = True
+
+
+@model("ri_foreign")
+def note_foreign(call: Call) -> Any:
+    name = _read_name(call, 0)
+    call.state.has_forgotten = True
+    if name not in call.state.notes:
+        call.state.notes = (*call.state.notes, name)
+
+
+@model("ri_forget")
+def forget_bytes(call: Call) -> Any:
+    pointer, size = call.arguments
+    call.state.has_forgotten = True
+    if isinstance(pointer, Pointer) and pointer.object and isinstance(size, int):
+        call.run.forget_memory(call.state, pointer, size)
 
 
 @model("ri_assume")

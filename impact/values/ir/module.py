@@ -72,11 +72,13 @@ class BytesConstant(NamedTuple):
 
 
 class Argument(NamedTuple):
-    """An argument of a call. copied: the type of what is passed by a copy in memory (byval), or None."""
+    """An argument of a call. copied: the type of what is passed by a copy in memory (byval), or None. extent: the bytes
+    that an address is of, 0 where that is not said."""
 
     type: IrType
     operand: Any
     copied: IrType | None
+    extent: int = 0
 
 
 class Instruction:

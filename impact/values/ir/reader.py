@@ -103,6 +103,7 @@ class _Tokens:
     def __init__(self, text: str, unit: IrUnit):
         self.unit = unit
         self.position = 0
+        self.extent = 0
         self.tokens: list[str] = []
         position, end = 0, len(text)
         while position < end:
@@ -143,10 +144,12 @@ class _Tokens:
             depth += (token == "(") - (token == ")")
 
     def skip_attributes(self) -> IrType | None:
-        """Skips what says nothing here; gives the type of a byval attribute."""
-        copied = None
+        """Skips what says nothing here; gives the type of a byval attribute, and keeps how many bytes there are."""
+        copied, self.extent = None, 0
         while True:
             token = self.peek()
+            if token in ("dereferenceable", "dereferenceable_or_null") and self.peek(2).isdigit():
+                self.extent = int(self.peek(2))
             if token == "byval" or (token == "byref" and self.peek(1) == "("):
                 self.take()
                 self.expect("(")
@@ -318,7 +321,8 @@ class _Tokens:
                     depth += (token == "(") - (token == ")")
                 arguments.append(Argument(type_, UNDEFINED, None))
             else:
-                arguments.append(Argument(type_, self.read_operand(type_), copied))
+                extent = self.extent
+                arguments.append(Argument(type_, self.read_operand(type_), copied, extent))
             self.accept(",")
         return arguments
 

@@ -91,6 +91,8 @@ class State:
         self.logs: tuple[str, ...] = ()
         self.sent: tuple[Sent, ...] = ()
         self.has_begun = False
+        # Whether members are as nobody knows when the callback begins.
+        self.has_forgotten = False
         self.path: tuple[str, ...] = ()
         self.sending: Sent | None = None
         self.members: tuple[Member, ...] = ()

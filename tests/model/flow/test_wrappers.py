@@ -119,7 +119,7 @@ def test_a_helper_of_the_workspace_that_hands_on_the_name_beside_a_node():
     helper = """
         namespace nav2_util {
         template <typename NodeT>
-        void declare_parameter_if_not_declared(NodeT node, const std::string& name, const rclcpp::ParameterValue& value) {
+        void declare_parameter_if_not_declared(NodeT node, const std::string& name, const ParameterValue& value) {
           if (!node->has_parameter(name)) { node->declare_parameter(name, value); }
         }
         }

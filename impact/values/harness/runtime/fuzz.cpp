@@ -72,6 +72,9 @@ void ri_member(const char *, const void *, uint64_t) noexcept {}
 void ri_begin(void) noexcept { begun = true; }
 void ri_end(void) noexcept { longjmp(back, 1); }
 void ri_unknown(const char *) noexcept { longjmp(back, 1); }
+void ri_foreign(const char *) noexcept { longjmp(back, 1); }
+void ri_cut(const char *) noexcept { if (begun) longjmp(back, 1); }
+void ri_forget(const void *, uint64_t) noexcept {}
 void ri_assume(int condition) noexcept { if (!condition) longjmp(back, 1); }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

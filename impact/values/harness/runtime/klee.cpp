@@ -59,7 +59,11 @@ void ri_member(const char *, const void *place, uint64_t size) noexcept {
   ri_members[ri_watched] = {place, malloc(size), size};
   memcpy(ri_members[ri_watched++].before, place, size);
 }
-void ri_begin(void) noexcept { ri_effects = ri_logs = 0; }
+static bool ri_begun = false;
+void ri_begin(void) noexcept {
+  ri_begun = true;
+  ri_effects = ri_logs = 0;
+}
 void ri_end(void) noexcept {
   for (unsigned i = 0; i < ri_watched; ++i)
     if (memcmp(ri_members[i].place, ri_members[i].before, ri_members[i].size)) ++ri_effects;
@@ -68,6 +72,9 @@ void ri_end(void) noexcept {
   klee_report_error(__FILE__, __LINE__, "ignored", "ignored.err");
 }
 void ri_unknown(const char *what) noexcept { klee_warning_once(what); klee_silent_exit(77); }
+void ri_foreign(const char *what) noexcept { ri_unknown(what); }
+void ri_cut(const char *what) noexcept { if (ri_begun) ri_unknown(what); }
+void ri_forget(const void *, uint64_t) noexcept {}
 void ri_assume(int condition) noexcept { klee_assume(condition); }
 void RI_KLEE_ENTRY(void);
 }

@@ -114,7 +114,8 @@ void ri_sent_end(void) noexcept { tell("sent end"); }
 void ri_member(const char *name, const void *start, uint64_t size) noexcept {
   members().push_back({name, static_cast<const unsigned char *>(start), std::string(static_cast<const char *>(start), size)});
 }
-void ri_begin(void) noexcept { tell("begin"); }
+static bool has_begun = false;
+void ri_begin(void) noexcept { has_begun = true; tell("begin"); }
 void ri_end(void) noexcept {
   for (const Member &one : members())
     if (memcmp(one.start, one.before.data(), one.before.size()) != 0) ri_effect("member", one.name);
@@ -122,6 +123,9 @@ void ri_end(void) noexcept {
   _exit(0);
 }
 void ri_unknown(const char *what) noexcept { tell("unknown\t" + clean(what)); _exit(77); }
+void ri_foreign(const char *what) noexcept { ri_unknown(what); }
+void ri_cut(const char *what) noexcept { if (has_begun) ri_unknown(what); }
+void ri_forget(const void *, uint64_t) noexcept {}
 void ri_assume(int condition) noexcept { if (!condition) { tell("impossible"); _exit(78); } }
 }
 

@@ -57,6 +57,13 @@ void ri_resize(void *start, uint64_t size) RI_NOEXCEPT;
 
 // Nothing is known from here on: ends this way as unknown. Natively: ends the program with status 77.
 void ri_unknown(const char *what) RI_NOEXCEPT;
+// Something that is not known is done here, and the way goes on: it is not known to lead to nothing. Natively it ends, as
+// with ri_unknown.
+void ri_foreign(const char *what) RI_NOEXCEPT;
+// A part of the code that stood here was left out. In the callback: as ri_unknown. Before it, the way goes on.
+void ri_cut(const char *what) RI_NOEXCEPT;
+// Some bytes (size 0: all of the object from there on) may be anything from here on; natively they stay as they are.
+void ri_forget(const void *start, uint64_t size) RI_NOEXCEPT;
 // This way cannot happen in a real node.
 void ri_assume(int condition) RI_NOEXCEPT;
 

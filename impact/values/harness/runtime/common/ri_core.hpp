@@ -65,6 +65,20 @@ inline void effect(const char *kind, const char *name) noexcept { if (phase) ri_
 inline void log(const char *level) noexcept { if (phase) ri_log(level); }
 template <class... A> inline void log_all(const char *level, A &&...) noexcept { log(level); }
 inline void unknown(const char *what) noexcept { if (phase) ri_unknown(what); }
+// What is done by code that is not here. What it is handed may be changed by it.
+template <class T> void touch(T &value);
+template <class... A> void foreign(const char *what, A &&...a) noexcept {
+  if (phase) ri_foreign(what);
+#ifdef RI_SYMBOLIC
+  (void)what; (touch(a), ...);
+#endif
+}
+
+// What stands for parts of the sources that do not compile. Where one lies on the way to the callback, nothing is known
+// of what it would have set. The second kind stands where a value would have been given.
+inline int was_cut = 0;
+inline void cut(const char *what) noexcept { if (!phase) was_cut = 1; ri_cut(what); }
+[[noreturn]] inline void cut_end(const char *what) noexcept { ri_unknown(what); ri_end(); }
 
 // Swallows what is logged.
 struct Stream {
@@ -73,14 +87,14 @@ struct Stream {
   const Stream &operator<<(std::ios_base &(*)(std::ios_base &)) const { return *this; }
 };
 
-// ---- Anything: what a header that is not here declares. In the callback its use ends the way as unknown.
+// ---- Anything: what a header that is not here declares. Its use is noted; what it gives is any value.
 
 struct Anything;
 template <class T> T &make_something();
 // A number that nothing is known of.
 struct Number {
-  operator int() const { unknown("a number of a header that is not here"); return 0; }
-  template <class A> Number &operator=(const A &) { unknown("a number of a header that is not here"); return *this; }
+  operator int() const { foreign("a number of a header that is not here"); return make_something<int>(); }
+  template <class A> Number &operator=(const A &) { foreign("a number of a header that is not here"); return *this; }
 };
 template <class T> struct is_initializer_list : std::false_type {};
 template <class T> struct is_initializer_list<std::initializer_list<T>> : std::true_type {};
@@ -95,22 +109,22 @@ struct Anything {
   template <class A, class... B, class = std::enable_if_t<std::is_base_of<Anything, std::decay_t<A>>::value &&
                                                           (sizeof...(B) > 0)>, class = void>
   Anything(A &&, B &&...) {}
-  Anything &operator=(const Anything &) { unknown(name); return *this; }
-  template <class A> Anything &operator=(A &&) { unknown(name); return *this; }
-  template <class... A> Anything &operator()(A &&...) const { unknown(name); return make_something<Anything>(); }
-  template <class A> Anything &operator[](A &&) const { unknown(name); return make_something<Anything>(); }
-  Anything *operator->() const { unknown(name); return const_cast<Anything *>(this); }
-  Anything &operator*() const { unknown(name); return const_cast<Anything &>(*this); }
-  Anything &operator++() { unknown(name); return *this; }
-  Anything operator++(int) { unknown(name); return *this; }
-  Anything operator-() const { unknown(name); return *this; }
-  Anything *begin() const { unknown(name); return const_cast<Anything *>(this); }
+  Anything &operator=(const Anything &) { foreign(name); return *this; }
+  template <class A> Anything &operator=(A &&) { foreign(name); return *this; }
+  template <class... A> Anything &operator()(A &&...a) const { foreign(name, a...); return make_something<Anything>(); }
+  template <class A> Anything &operator[](A &&) const { foreign(name); return make_something<Anything>(); }
+  Anything *operator->() const { foreign(name); return const_cast<Anything *>(this); }
+  Anything &operator*() const { foreign(name); return const_cast<Anything &>(*this); }
+  Anything &operator++() { foreign(name); return *this; }
+  Anything operator++(int) { foreign(name); return *this; }
+  Anything operator-() const { foreign(name); return *this; }
+  Anything *begin() const { foreign(name); return const_cast<Anything *>(this); }
   Anything *end() const { return const_cast<Anything *>(this); }
   // Not to what would make an assignment to a text ambiguous.
   template <class T, class = std::enable_if_t<!std::is_base_of<Anything, T>::value && !std::is_reference<T>::value &&
                                               !std::is_same<T, char>::value && !std::is_same<T, const char *>::value &&
                                               !is_initializer_list<T>::value>>
-  operator T() const { unknown(name); return make_something<std::remove_cv_t<T>>(); }
+  operator T() const { foreign(name); return make_something<std::remove_cv_t<T>>(); }
 #ifdef RI_EXTRA_ri_Anything
   RI_EXTRA_ri_Anything
 #endif
@@ -130,10 +144,17 @@ struct Anything {
 
 template <class T> T &make_something() {
   alignas(T) static unsigned char place[sizeof(T)];
-  if constexpr (std::is_arithmetic<T>::value || std::is_pointer<T>::value || std::is_enum<T>::value)
+  if constexpr (std::is_arithmetic<T>::value || std::is_pointer<T>::value || std::is_enum<T>::value) {
+    ri_forget(place, sizeof(T));
     return *reinterpret_cast<T *>(place);
-  else if constexpr (std::is_default_constructible<T>::value)
-    return *new (place) T();
+  }
+  else if constexpr (std::is_default_constructible<T>::value) {
+    T &made = *new (place) T();
+#ifdef RI_SYMBOLIC
+    touch(made);
+#endif
+    return made;
+  }
   else
     return *reinterpret_cast<T *>(place);
 }
@@ -142,15 +163,21 @@ template <class T> T &make_something() {
   template <class A, class B,                                                                               \
             class = std::enable_if_t<std::is_base_of<Anything, std::decay_t<A>>::value ||                   \
                                      std::is_base_of<Anything, std::decay_t<B>>::value>>                    \
-  Anything operator op(A &&, B &&) { unknown("an operator of what a header that is not here declares"); return {}; }
+  Anything operator op(A &&, B &&) { foreign("an operator of what a header that is not here declares"); return {}; }
 RI_OPERATOR(+) RI_OPERATOR(-) RI_OPERATOR(*) RI_OPERATOR(/) RI_OPERATOR(%) RI_OPERATOR(&) RI_OPERATOR(|)
+#undef RI_OPERATOR
+#define RI_OPERATOR(op)                                                                                     \
+  template <class A, class B,                                                                               \
+            class = std::enable_if_t<std::is_base_of<Anything, std::decay_t<A>>::value ||                   \
+                                     std::is_base_of<Anything, std::decay_t<B>>::value>>                    \
+  Anything operator op(A &&a, B &&b) { foreign("an operator of what a header that is not here declares", a, b); return {}; }
 RI_OPERATOR(<<) RI_OPERATOR(>>) RI_OPERATOR(+=) RI_OPERATOR(-=) RI_OPERATOR(*=) RI_OPERATOR(/=) RI_OPERATOR(|=)
 #undef RI_OPERATOR
 #define RI_COMPARES(op)                                                                                     \
   template <class A, class B,                                                                               \
             class = std::enable_if_t<std::is_base_of<Anything, std::decay_t<A>>::value ||                   \
                                      std::is_base_of<Anything, std::decay_t<B>>::value>>                    \
-  bool operator op(A &&, B &&) { unknown("a comparison of what a header that is not here declares"); return false; }
+  bool operator op(A &&, B &&) { foreign("a comparison of what a header that is not here declares"); return make_something<bool>(); }
 RI_COMPARES(==) RI_COMPARES(!=) RI_COMPARES(<) RI_COMPARES(>) RI_COMPARES(<=) RI_COMPARES(>=)
 #undef RI_COMPARES
 
@@ -357,6 +384,50 @@ template <class T> void name_member(T &value, const char *name, bool make) {
     }
   }
 }
+
+// A member or variable that nothing is known of. Handles of the framework stay.
+template <class T> struct is_lock;
+template <class T> inline constexpr bool can_fill = is_message<T>::value || std::is_same<T, std::string>::value;
+template <class T, class A> inline constexpr bool can_fill<std::vector<T, A>> =
+    !std::is_same<T, bool>::value && (can_fill<T> || std::is_arithmetic<T>::value);
+inline uint64_t touched = 0;
+template <class T> void fill_foreign(T &value) {
+  ri_enter("~foreign"); ri_enter_index(touched++); fill(value, ""); ri_leave(); ri_leave();
+}
+template <class T> void forget(T &value) {
+  if constexpr (std::is_reference<T>::value || has_name<T>::value || is_lock<std::remove_cv_t<T>>::value ||
+                std::is_base_of<Anything, T>::value) (void)value;
+  else if constexpr (is_pointer_like<std::remove_cv_t<T>>::value) {
+    // The pointer alone: an object that is shared without a count.
+    if constexpr (!has_name<std::remove_cv_t<typename T::element_type>>::value) ri_forget((const void *)&value, sizeof(void *));
+  }
+#ifdef RI_SYMBOLIC
+  else if constexpr (can_fill<T>) fill_foreign(value);
+#endif
+  else ri_forget((const void *)&value, sizeof(T));
+}
+// A member that cannot be watched: what the callback does to it is not seen.
+inline void lose_member() noexcept { ri_foreign("a member that cannot be watched"); }
+
+// What code that is not here was handed: messages and texts are filled anew, the rest is forgotten.
+template <class T> void touch(T &value) {
+  if constexpr (std::is_const<T>::value || std::is_function<T>::value || has_name<T>::value || is_lock<T>::value ||
+                std::is_base_of<Anything, T>::value || std::is_empty<T>::value) (void)value;
+  else if constexpr (std::is_pointer<T>::value) {
+    using Inner = std::remove_pointer_t<T>;
+    if constexpr (!std::is_const<Inner>::value && !std::is_function<Inner>::value)
+      if (phase && value) ri_forget((const void *)value, 0);
+  }
+  else if constexpr (is_pointer_like<T>::value) {
+    using Inner = typename T::element_type;
+    if constexpr (!std::is_const<Inner>::value && is_message<Inner>::value) { if (value) touch(*value); }
+    else if constexpr (!std::is_const<Inner>::value && !has_name<Inner>::value)
+      if (phase && value) ri_forget((const void *)value.get(), 0);
+  }
+  else if constexpr (can_fill<T>) fill_foreign(value);
+  else ri_forget((const void *)&value, sizeof(T));
+}
+template <class T> void forget_cut(T &value) { if (was_cut) forget(value); }
 
 // Watches a member. Handles of the framework and locks are no state.
 template <class T> struct is_lock : std::false_type {};
