@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -63,9 +63,10 @@ class Asked(NamedTuple):
 
 @dataclass
 class _Target:
-    """A callback that can be explored. prepared: its harness; code: of a Python one; types: of messages that it has
-    to do with, known once it was explored."""
+    """A callback that can be explored. identity: as _identify() has it; prepared: its harness; code: of a Python one;
+    types: of messages that it has to do with, known once it was explored."""
 
+    identity: tuple[str, str, int, str]
     answer: CallbackAnswer
     names: Mapping[str, Mapping[int, str]]
     prepared: PreparedCallback | None = None
@@ -138,12 +139,21 @@ class Survey:
         return self._session
 
     def explore(
-        self, asked: Asked, *, replays: bool = False, fuzz_seconds: float = 0.0, jobs: int = 1,
-        progress: Progress | None = None,
-    ) -> ValuesReport:  # fmt: skip
-        """What was found out about the callbacks that are asked for, in the order of their places. replays: whether
-        examples are run for real, which compiles and runs code of the workspace, apart from this process. fuzz_seconds:
-        for which each C++ callback is fuzzed besides; 0 for not."""
+        self, asked: Asked, *, publishers: bool = False, replays: bool = False, fuzz_seconds: float = 0.0,
+        jobs: int = 1, progress: Progress | None = None,
+    ) -> tuple[ValuesReport, tuple[CallbackAnswer, ...]]:  # fmt: skip
+        """What was found out about the callbacks that are asked for, in the order of their places, and, with
+        publishers, about those that publish what these receive. replays: whether examples of the former are run for
+        real, which compiles and runs code of the workspace, apart from this process. fuzz_seconds: for which each of
+        their C++ callbacks is fuzzed besides; 0 for not."""
+        own = self._choose(asked)
+        rows = {language: [*own[language]] for language in LANGUAGES}
+        if publishers:
+            places = self._list_publishing({topic for chosen in own.values() for one in chosen for topic in one.topics})
+            for language, chosen in rows.items():
+                chosen += [
+                    one for one in self._callbacks[language] if (one.path, one.line) in places and one not in chosen
+                ]
         found: list[CallbackAnswer] = []
         offline: list[bool] = []
         targets = [*self._list_cpp(self._open_session(), rows["cpp"]), *self._list_python(rows["python"])]
@@ -271,11 +281,6 @@ class Survey:
         """Commands that send witnesses to a running node."""
         return [command for one in records if (command := format_publish_command(self._definitions, one))]
 
-    def list_places(self, files: Collection[str]) -> frozenset[tuple[str, int]]:
-        """Where callbacks of some files are given to the framework."""
-        rows = [one for each in ("cpp", "python") for one in list_callbacks(self.workspace, self.graph, each)]
-        return frozenset((one.path, one.line) for one in rows if _get_file(one) in files)
-
     # C++.
 
     def _list_cpp(self, session: HarnessSession, callbacks: Iterable[CppCallback]) -> Iterator[_Target]:
@@ -283,9 +288,10 @@ class Survey:
             path, line = one.function_place
             answer = CallbackAnswer(
                 one.callback, one.kind, "cpp", path, line, one.message_type, one.topics, one.nodes, self.bounds,
-                one.reason, stood_for=one.stood_for, is_bare=one.way == "bare",
+                one.reason, stood_for=one.stood_for,
             )  # fmt: skip
-            yield _Target(answer, _name_constants(one.constants, self.workspace.ros), one)
+            identity = one.kind, one.path, one.line, one.callback
+            yield _Target(identity, answer, _name_constants(one.constants, self.workspace.ros), one)
 
     # Python.
 
@@ -319,10 +325,8 @@ class Survey:
 
         return Messages(find_section, self.workspace.ros)
 
-    def _list_python(self, asked: Asked) -> Iterator[_Target]:
-        for one in list_callbacks(self.workspace, self.graph, "python"):
-            if not is_asked(one, asked.nodes, asked.topics, asked.callbacks, asked.kinds, asked.places):
-                continue
+    def _list_python(self, callbacks: Iterable[CppCallback]) -> Iterator[_Target]:
+        for one in callbacks:
             function = one.function
             path, line = (function.source.path, function.facts.line) if function is not None else (one.path, one.line)
             answer = CallbackAnswer(
@@ -330,11 +334,11 @@ class Survey:
                 _refuse(one),
             )  # fmt: skip
             if answer.reason:
-                yield _Target(answer, {})
+                yield _Target(_identify(one), answer, {})
                 continue
             module = self._modules.get(f"~{path}")
             if module is None:
-                yield _Target(replace(answer, reason=f"{path} cannot be read"), {})
+                yield _Target(_identify(one), replace(answer, reason=f"{path} cannot be read"), {})
                 continue
             # The top of a module has no name.
             name = one.site.name if one.kind == "main" else one.name
@@ -377,6 +381,15 @@ class Survey:
             messages = self._make_messages()
             messages.asked.update(target.types)
             return replay_witness(place, witness, example.kinds, messages, Path(folder))
+
+
+def _identify(callback: CppCallback) -> tuple[str, str, int, str]:
+    """What tells one callback from the others: kind, where it is given to the framework, name."""
+    return callback.kind, callback.path, callback.line, callback.name
+
+
+def _get_place(answer: CallbackAnswer) -> tuple[str, int, str]:
+    return answer.path, answer.line, answer.callback
 
 
 def _get_file(callback: CppCallback) -> str:
@@ -494,8 +507,10 @@ def _shorten_sent(sent: SentThrough, root: Path) -> SentThrough:
 def _explore_entries(prepared: PreparedCallback, bounds: Bounds) -> Exploration:
     """What comes of the first entry that leads to a verdict; of the first of all where none does."""
     first: Exploration | None = None
-    for entry in (prepared.entry, *(one.name for one in prepared.others)):
+    ways = {prepared.entry: prepared.way, **{one.name: one.way for one in prepared.others}}
+    for entry, way in ways.items():
         found = explore(prepared.ir_texts, entry, bounds, prepared.is_workspace_file)
+        found.is_bare = way == "bare"
         if any(path.result is not Reaction.UNKNOWN for path in found.paths):
             return found
         first = first or found
@@ -510,7 +525,7 @@ def _read_result(answer: CallbackAnswer, result: Evaluated | Died, root: Path) -
     sent = tuple(_shorten_sent(one, root) for one in result.sent)
     return replace(
         answer, counts=result.counts, fields=result.fields, examples=examples, sent=sent,
-        unknown=result.unknown, assumed=result.assumed, left=result.left, seconds=result.seconds,
+        unknown=result.unknown, assumed=result.assumed, left=result.left, seconds=result.seconds, is_bare=result.is_bare,
     )  # fmt: skip
 
 
@@ -533,9 +548,9 @@ def _name_constants(constants: Mapping[str, tuple[str, str]], ros: int) -> Mappi
     """Names of constants by the type of the fields that they are for, `uint8`."""
     found: dict[str, dict[int, str]] = {}
     for name, (type_, value) in constants.items():
+        number = find_integer(type_, ros)
+        key = f"{'int' if number.is_signed else 'uint'}{number.bits}" if number is not None else type_
         with suppress(ValueError):
-            number = find_integer(type_, ros)
-            key = f"{'int' if number.is_signed else 'uint'}{number.bits}" if number is not None else type_
             found.setdefault(key, {}).setdefault(int(value, 0), name)
     return found
 
