@@ -525,7 +525,8 @@ def _read_result(answer: CallbackAnswer, result: Evaluated | Died, root: Path) -
     sent = tuple(_shorten_sent(one, root) for one in result.sent)
     return replace(
         answer, counts=result.counts, fields=result.fields, examples=examples, sent=sent,
-        unknown=result.unknown, assumed=result.assumed, left=result.left, seconds=result.seconds, is_bare=result.is_bare,
+        unknown=result.unknown, assumed=result.assumed, left=result.left, seconds=result.seconds,
+        is_bare=result.is_bare,
     )  # fmt: skip
 
 
