@@ -65,6 +65,10 @@ def report_key(read: Read, options: Options) -> bytes | None:
         found.update(repr(parts).encode("utf-8", "backslashreplace"))
 
     add(compute_code_stamp(), compute_data_stamp(), _list_updated_data(), asked, config, read.ros, targets, tree.root)
+    if options.select or config.select:
+        from ..values.harness.toolchain import find_clang
+
+        add(find_clang())  # without which rules over values see no C++
     add(tree.problems, tree.skipped, tree.aliases, tree.repositories, read.extraction.problems)
     add(read.discovered.packages, read.discovered.ignored, read.discovered.problems)
     ids = read.extraction.ids

@@ -57,12 +57,16 @@ def explore_values(
         graph = get_flow(workspace).system
         with Survey(path, workspace, graph, bounds or Bounds()) as survey:
             asked = Asked(nodes, topics, callbacks, kinds)
-            report = survey.explore(asked, replays=replays, fuzz_seconds=fuzz_seconds, jobs=jobs, progress=progress)
+            report, others = survey.explore(
+                asked, publishers=publishers, replays=replays, fuzz_seconds=fuzz_seconds, jobs=jobs, progress=progress
+            )
             if (nodes or topics or callbacks) and not report.callbacks:
                 raise CheckError(f"{_spell(nodes, topics, callbacks)}: no such callback; list them without it")
             if out is not None:
                 _write(survey, asked, report, emit, out)
-            joined = join_publishers(survey, report.callbacks, jobs, progress) if publishers else Joined((), ())
+            joined = Joined((), ())
+            if publishers:
+                joined = join_publishers(survey, report.callbacks, others, jobs, progress)
             units: list[Mismatch] = []
             if publishers:
                 received = {topic for one in report.callbacks for topic in one.topics}
@@ -88,9 +92,9 @@ def _compare(
     workspace = link_for_flow(tree, store, jobs, None)
     old = get_flow(workspace).system
     with open_sources(tree) as root, Survey(root, workspace, old, bounds) as survey:
-        report = survey.explore(asked, jobs=jobs)
-        others = join_publishers(survey, report.callbacks, jobs).others if publishers else ()
-    return compare_values([*report.callbacks, *others], old, now, graph)
+        report, others = survey.explore(asked, publishers=publishers, jobs=jobs)
+        joined = join_publishers(survey, report.callbacks, others, jobs) if publishers else Joined((), ())
+    return compare_values([*report.callbacks, *joined.others], old, now, graph)
 
 
 def _write(survey: Survey, asked: Asked, report: ValuesReport, emit: str, out: Path) -> None:

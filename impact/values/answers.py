@@ -85,7 +85,7 @@ class SentThrough:
 class CallbackAnswer:
     """One callback. kind: `subscriber`, `service`, `timer`, `action`. reason: why it was not explored; empty else.
     unknown: why ways are unknown, with their number. left: ways that were not ended. stood_for: what the harness stands
-    in for."""
+    in for. is_bare: no constructor of the node was run, so that members are empty."""
 
     callback: str
     kind: str
@@ -106,6 +106,7 @@ class CallbackAnswer:
     stood_for: tuple[str, ...] = ()
     left: int = 0
     seconds: float = 0.0
+    is_bare: bool = False
 
     @property
     def is_explored(self) -> bool:

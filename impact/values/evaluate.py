@@ -29,6 +29,7 @@ class Evaluated(NamedTuple):
     seconds: float
     asked: tuple[str, ...] = ()
     """Types of messages that the callback had to do with."""
+    is_bare: bool = False
 
 
 def evaluate(
@@ -51,6 +52,7 @@ def evaluate(
         assumed,
         exploration.left,
         exploration.seconds,
+        is_bare=exploration.is_bare,
     )
 
 

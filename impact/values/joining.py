@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from ...edges.memory import cache_in_derived
@@ -14,7 +14,7 @@ from .answers import CallbackAnswer
 from .disk import open_sources
 from .matching import UNIT, Mismatch, Sender, list_mismatches
 from .outcomes import Bounds
-from .survey import KINDS, Asked, Progress, Survey, get_key
+from .survey import Asked, Progress, Survey, get_key
 from .units import UnitMismatch, list_unit_mismatches
 
 CHECK_BOUNDS = Bounds(text=16, seconds=10.0)
@@ -29,28 +29,15 @@ class Joined(NamedTuple):
 
 
 def join_publishers(
-    survey: Survey, callbacks: Sequence[CallbackAnswer], jobs: int = 1, progress: Progress | None = None
-) -> Joined:
-    """Explores who publishes what some callbacks receive, and holds both against each other."""
-    received = {topic for one in callbacks for topic in one.topics}
-    if not received:
-        return Joined((), ())
-    known = {get_key(one) for one in callbacks}
+    survey: Survey, callbacks: Sequence[CallbackAnswer], publishing: Sequence[CallbackAnswer], jobs: int = 1,
+    progress: Progress | None = None,
+) -> Joined:  # fmt: skip
+    """Holds what some callbacks do against what others publish that they receive. Who publishes to these is explored as
+    well."""
     graph = survey.graph
-    others: list[CallbackAnswer] = []
-    topics = received
-    # Who publishes what they receive, and who publishes what those receive.
-    for _ in range(2):
-        places = list_starting_places(survey, graph, topics) - {(one.path, one.line) for one in others}
-        if not places:
-            break
-        found = survey.explore(Asked(kinds=KINDS, places=places), jobs=jobs, progress=progress)
-        fresh = [one for one in found.callbacks if get_key(one) not in known]
-        known.update(get_key(one) for one in fresh)
-        others += fresh
-        topics = {topic for one in fresh for topic in one.topics} - topics
-        if not topics:
-            break
+    received = {topic for one in callbacks for topic in one.topics}
+    topics = {topic for one in publishing for topic in one.topics} - received
+    others = [*publishing, *survey.explore_publishing(topics, jobs, progress)]
     mismatches = list_mismatches([*callbacks, *others], graph, survey, survey.workspace.ros, jobs)
     asked = {get_key(one) for one in callbacks}
     kept = [one for one in mismatches if one.subscriber is not None and get_key(one.subscriber) in asked]
@@ -91,14 +78,5 @@ def find_mismatches(workspace: Workspace) -> tuple[Mismatch, ...]:
     graph = get_flow(workspace).system
     jobs = count_cores()
     with open_sources(workspace.extraction.tree) as root, Survey(root, workspace, graph, CHECK_BOUNDS) as survey:
-        report = survey.explore(Asked(), jobs=jobs)
-        return join_publishers(survey, report.callbacks, jobs).mismatches
-
-
-def list_starting_places(survey: Survey, graph: Graph, topics: Collection[str]) -> frozenset[tuple[str, int]]:
-    """Places of what makes the statements run that publish on some topics: of subscriptions, timers, services, and of
-    the programs themselves."""
-    statements = [one for one in graph.publishes if one.topic in topics]
-    places = {(way.trigger.path, way.trigger.line) for one in statements for way in one.by}
-    untold = {one.path for one in statements if not one.by}
-    return frozenset(places) | (survey.list_places(untold) if untold else frozenset())
+        report, others = survey.explore(Asked(), publishers=True, jobs=jobs)
+        return join_publishers(survey, report.callbacks, others, jobs).mismatches

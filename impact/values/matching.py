@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from ..model.flow.graph import Graph
+from ..model.flow.workspace import get_flow
 from .answers import CallbackAnswer, CallbackExample, FieldSets, SentThrough, SentValues, SentWay
 from .narrowing import GivenMessage, MessageCrash, MessageOutcome
 from .outcomes import CodeLine, CrashKind, InputKind, Reaction
@@ -23,6 +24,8 @@ _INDEX = re.compile(r"\[\d+\]")
 _SEVERITIES = ("note", "warning", "error")
 _MOST_LISTED = 32
 _BEYOND_END = (CrashKind.INDEX, CrashKind.EMPTY)
+# What members lead to that a constructor would have filled.
+_OF_MEMBERS = (CrashKind.INDEX, CrashKind.EMPTY, CrashKind.NULL, CrashKind.DANGLING, CrashKind.EXCEPTION)
 
 
 class EarlierSender(NamedTuple):
@@ -36,7 +39,7 @@ class EarlierSender(NamedTuple):
 class Sender(NamedTuple):
     """One statement that publishes on a topic: the callback that it runs in, where it is, and what it can send. ways:
     the messages with what is exact of them; is_listed: whether these are all. via: who sent what the callback received;
-    empty where that may be anybody. key: of the callback."""
+    empty where that may be anybody. key: of the callback; nodes: that run it."""
 
     callback: str
     places: tuple[CodeLine, ...]
@@ -46,6 +49,7 @@ class Sender(NamedTuple):
     is_listed: bool = False
     via: tuple[EarlierSender, ...] = ()
     key: CallbackKey | None = None
+    nodes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -141,7 +145,7 @@ def _make_sender(
 ) -> Sender:
     return Sender(
         answer.callback, sent.places, {one.path: one for one in sent.fields}, publishers.find_type(sent.places[0]),
-        sent.ways, sent.is_listed, via, get_key(answer),
+        sent.ways, sent.is_listed, via, get_key(answer), answer.nodes,
     )  # fmt: skip
 
 
@@ -153,6 +157,7 @@ def list_mismatches(
     publishers = TopicPublishers(graph)
     senders = _follow_one_hop(answers, list_senders(answers, publishers), publishers, survey, jobs)
     judged = _Verdicts(answers, senders, survey, jobs)
+    started = [{one.node for one in launch.starts} for launch in get_flow(survey.workspace).launches]
     found: list[Mismatch] = []
     for answer in answers:
         if answer.kind != "subscriber" or not answer.is_explored:
@@ -160,27 +165,40 @@ def list_mismatches(
         for topic in answer.topics:
             rows = [row for row in senders.get(topic, []) if _fits(row, answer)]
             for row in rows:
-                found.extend(_list_crashes(answer, topic, row, judged, ros))
+                for one in _list_crashes(answer, topic, row, judged, ros):
+                    is_lone = one.severity == "error" and not _run_together(row.nodes, answer.nodes, started)
+                    found.append(replace(one, severity="warning") if is_lone else one)
                 found.extend(_list_unhandled(answer, topic, row, judged))
             if publishers.is_complete(topic, rows):
                 found.extend(_list_impossible(answer, topic, rows))
     return _drop_repeats(found)
 
 
+def _run_together(some: Sequence[str], others: Sequence[str], started: Sequence[set[str]]) -> bool:
+    """Whether some nodes run at the same time as others, as far as is known: a launch file starts both, they are one,
+    or no launch file starts any of them. started: nodes by launch file."""
+    if set(some) & set(others) or any(not nodes.isdisjoint(some) and not nodes.isdisjoint(others) for nodes in started):
+        return True
+    return bool(some and others) and all(nodes.isdisjoint((*some, *others)) for nodes in started)
+
+
 def _drop_repeats(found: Iterable[Mismatch]) -> list[Mismatch]:
-    """Each once: a statement that several programs or callbacks run says the same, and what is certain comes first."""
+    """Each once: a statement that several programs or callbacks run says the same. What is certain comes first, then
+    what needs no earlier sender."""
     kept: dict[tuple[object, ...], Mismatch] = {}
     for one in found:
-        sender = one.sender
         values = one.values if one.place is None else ""
-        key = (
-            one.kind, one.topic, one.field, values, one.subscriber and get_key(one.subscriber), one.place,
-            sender.places if sender is not None else (), bool(sender and sender.via),
-        )  # fmt: skip
+        reader = get_key(one.subscriber) if one.subscriber is not None else None
+        places = one.sender.places if one.sender is not None else ()
+        key = (one.kind, one.topic, one.field, values, reader, one.place, places)
         known = kept.get(key)
-        if known is None or _SEVERITIES.index(one.severity) > _SEVERITIES.index(known.severity):
+        if known is None or _rank(one) > _rank(known):
             kept[key] = one
     return list(kept.values())
+
+
+def _rank(one: Mismatch) -> tuple[int, bool]:
+    return _SEVERITIES.index(one.severity), not (one.sender is not None and one.sender.via)
 
 
 def _fits(row: Sender, answer: CallbackAnswer) -> bool:
@@ -205,6 +223,7 @@ def _follow_one_hop(
     requests: list[Request] = []
     origins: dict[CallbackKey, list[tuple[str, Sender, SentWay]]] = {}
     by_key = {get_key(one): one for one in answers}
+    heard = {topic for one in answers if one.kind == "subscriber" for topic in one.topics}
     for answer in answers:
         if answer.kind != "subscriber" or not answer.sent:
             continue
@@ -215,7 +234,7 @@ def _follow_one_hop(
             if _fits(row, answer) and row.key != get_key(answer)
             for way in row.ways
         ]
-        if not rows or not _is_followed(answer, senders, publishers):
+        if not rows or not any(heard & _list_common_topics(sent, publishers) for sent in answer.sent):
             continue
         if len(rows) <= _MOST_MESSAGES:
             origins[get_key(answer)] = rows
@@ -238,11 +257,6 @@ def _follow_one_hop(
             if not way.is_assumed:
                 _add_senders(found, answer, sent, publishers, (EarlierSender(row.callback, topic, way.place),))
     return found
-
-
-def _is_followed(answer: CallbackAnswer, senders: Senders, publishers: TopicPublishers) -> bool:
-    """Whether somebody may want to know what a callback passes on."""
-    return any(_list_common_topics(sent, publishers) for sent in answer.sent) and bool(senders)
 
 
 def _add_senders(
@@ -286,7 +300,7 @@ class _Verdicts:
                 continue
             for topic in answer.topics:
                 self._subscribers.setdefault(topic, []).append(answer)
-            if not answer.is_explored:
+            if not _can_fail(answer):
                 continue
             rows = [
                 (way, _make_message(row, way))
@@ -320,16 +334,25 @@ class _Verdicts:
         return False
 
 
+def _can_fail(answer: CallbackAnswer) -> bool:
+    """Whether something else than being handled can follow from a message."""
+    others = (Reaction.CRASH, Reaction.IGNORED, Reaction.LOG_ONLY)
+    return answer.is_explored and any(answer.counts.get(each) for each in others)
+
+
 def _list_crashes(
     answer: CallbackAnswer, topic: str, row: Sender, judged: _Verdicts, ros: int
 ) -> Iterator[Mismatch]:  # fmt: skip
     """Crashes of a subscriber that messages of a publisher lead to, each once."""
     found: dict[tuple[CrashKind, CodeLine], tuple[str, SentWay, MessageCrash]] = {}
+    if answer.counts.keys() <= {Reaction.CRASH, Reaction.UNKNOWN}:
+        return  # what crashes on every message has most likely not been made as in a real node
     for way in row.ways:
         outcome = judged.find(answer, way)
         for crash in outcome.crashes if outcome is not None else ():
             # Whether it crashes depends on more than the message, or whether the message is sent does.
-            severity = "note" if not crash.is_certain else "error" if _is_sent_surely(way) else "warning"
+            certain = crash.is_certain and not (answer.is_bare and crash.kind in _OF_MEMBERS)
+            severity = "note" if not certain else "error" if _is_sent_surely(way) else "warning"
             known = found.get((crash.kind, crash.place))
             if known is None or _SEVERITIES.index(severity) > _SEVERITIES.index(known[0]):
                 found[crash.kind, crash.place] = severity, way, crash
@@ -346,7 +369,7 @@ def _list_crashes(
         goes_on = ros == 1 and answer.language == "python" and crash.kind is not CrashKind.ENDLESS
         yield Mismatch(
             SIZE if sizes else CRASHING, "warning" if goes_on and severity == "error" else severity, topic,
-            answer.message_type, field, values, row, answer, example, crash.is_certain, crash.place, crash.kind.value,
+            answer.message_type, field, values, row, answer, example, severity != "note", crash.place, crash.kind.value,
             _is_sent_surely(way),
         )  # fmt: skip
 

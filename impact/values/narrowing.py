@@ -28,6 +28,8 @@ _FLOATS = (InputKind.FLOAT32, InputKind.FLOAT64)
 _MOST_WAYS = 24
 _MESSAGE = "msg."
 _PARAMETER = "~param."
+_SURROUNDINGS = ("~ok", "~publisher", "~now")
+"""Inputs that every running node has: ROS is up, somebody listens, time goes on."""
 
 ParameterValues = Mapping[str, tuple[str | float | None, ...]]
 """What parameters may be, by their names in the code: texts, numbers, truth values; None for what the code says itself
@@ -173,7 +175,7 @@ def _list_asked(solving: Solving, path: CallbackPath, exact: Mapping[str, int]) 
         names = {
             name
             for name in solving.find_traits(condition).names
-            if name.startswith((_MESSAGE, "this.", "global.", "request.", _PARAMETER)) and name not in exact
+            if not name.startswith(_SURROUNDINGS) and name not in exact
         }
         if names and not (len(names) == 1 and _is_bound(solving, condition, next(iter(names)))):
             found |= names

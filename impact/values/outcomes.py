@@ -147,7 +147,8 @@ class UnknownFunction(NamedTuple):
 class Exploration:
     """All that was found out about one callback. left: ways that were begun and not ended (time or number of paths);
     where it is not 0, nothing is surely ignored. functions: variables that stand for what z3 does not know (the sine of
-    a term), with what calculates them. fixed: inputs that have one value, where it was narrowed to that."""
+    a term), with what calculates them. fixed: inputs that have one value, where it was narrowed to that. is_bare:
+    no constructor of the node was run."""
 
     inputs: dict[str, SymbolicInput] = field(default_factory=dict)
     paths: list[CallbackPath] = field(default_factory=list)
@@ -157,6 +158,7 @@ class Exploration:
     seconds: float = 0.0
     functions: dict[str, UnknownFunction] = field(default_factory=dict)
     fixed: Mapping[str, int] = field(default_factory=dict)
+    is_bare: bool = False
 
 
 class Witness(NamedTuple):

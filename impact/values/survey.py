@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -44,6 +44,7 @@ from .settings import find_parameters
 from .witnesses import WitnessRecord, format_publish_command, write_tests
 
 KINDS = ("subscriber", "service", "timer", "action", "main")
+LANGUAGES = ("cpp", "python")
 _ANY_NUMBER = (InputKind.INTEGER, 64, False)
 Progress = Callable[[int, int], None]
 
@@ -62,9 +63,10 @@ class Asked(NamedTuple):
 
 @dataclass
 class _Target:
-    """A callback that can be explored. prepared: its harness; code: of a Python one; types: of messages that it has
-    to do with, known once it was explored."""
+    """A callback that can be explored. identity: as _identify() has it; prepared: its harness; code: of a Python one;
+    types: of messages that it has to do with, known once it was explored."""
 
+    identity: tuple[str, str, int, str]
     answer: CallbackAnswer
     names: Mapping[str, Mapping[int, str]]
     prepared: PreparedCallback | None = None
@@ -137,36 +139,80 @@ class Survey:
         return self._session
 
     def explore(
-        self, asked: Asked, *, replays: bool = False, fuzz_seconds: float = 0.0, jobs: int = 1,
-        progress: Progress | None = None,
-    ) -> ValuesReport:  # fmt: skip
-        """What was found out about the callbacks that are asked for, in the order of their places. replays: whether
-        examples are run for real, which compiles and runs code of the workspace, apart from this process. fuzz_seconds:
-        for which each C++ callback is fuzzed besides; 0 for not."""
+        self, asked: Asked, *, publishers: bool = False, replays: bool = False, fuzz_seconds: float = 0.0,
+        jobs: int = 1, progress: Progress | None = None,
+    ) -> tuple[ValuesReport, tuple[CallbackAnswer, ...]]:  # fmt: skip
+        """What was found out about the callbacks that are asked for, in the order of their places, and, with
+        publishers, about those that publish what these receive. replays: whether examples of the former are run for
+        real, which compiles and runs code of the workspace, apart from this process. fuzz_seconds: for which each of
+        their C++ callbacks is fuzzed besides; 0 for not."""
+        own = self._choose(asked)
+        rows = {language: [*own[language]] for language in LANGUAGES}
+        if publishers:
+            places = self._list_publishing({topic for chosen in own.values() for one in chosen for topic in one.topics})
+            for language, chosen in rows.items():
+                chosen += [
+                    one for one in self._callbacks[language] if (one.path, one.line) in places and one not in chosen
+                ]
         found: list[CallbackAnswer] = []
         offline: list[bool] = []
-        targets = [*self._list_cpp(self._open_session(), asked), *self._list_python(asked)]
+        targets = [*self._list_cpp(self._open_session(), rows["cpp"]), *self._list_python(rows["python"])]
         ready = [number for number, one in enumerate(targets) if not one.answer.reason]
         found = [one.answer for one in targets]
         for target in targets:
             target.parameters = find_parameters(self.workspace, target.answer.nodes)
             self._known[target.key] = target
+        asked_for = {_identify(one) for chosen in own.values() for one in chosen}
         results = run_forked(_explore_target, ready, jobs, targets, self._make_messages(), self._modules)
         for done, (number, result) in enumerate(results, 1):
             target = targets[number]
             answer = _read_result(target.answer, result, self.root)
             if isinstance(result, Evaluated):
                 target.types = result.asked
-            if replays and answer.examples:
+            is_own = target.identity in asked_for
+            if replays and is_own and answer.examples:
                 answer, is_offline = self._replay(target, answer)
                 offline.append(is_offline)
-            if fuzz_seconds and target.prepared is not None:
+            if fuzz_seconds and is_own and target.prepared is not None:
                 answer = _run_fuzzer(target.prepared, answer, fuzz_seconds)
             found[number] = answer
             if progress is not None:
                 progress(done, len(ready))
-        found.sort(key=lambda one: (one.path, one.line, one.callback))
-        return ValuesReport(tuple(found), self.bounds, replays, all(offline) if offline else None)
+        pairs = sorted(zip(found, targets, strict=True), key=lambda pair: _get_place(pair[0]))
+        kept = tuple(answer for answer, target in pairs if target.identity in asked_for)
+        known = {_get_place(one) for one in kept}
+        others = tuple(answer for answer, _ in pairs if _get_place(answer) not in known)
+        return ValuesReport(kept, self.bounds, replays, all(offline) if offline else None), others
+
+    @cached_property
+    def _callbacks(self) -> dict[str, list[CppCallback]]:
+        """All callbacks of the workspace, by language."""
+        return {language: list_callbacks(self.workspace, self.graph, language) for language in LANGUAGES}
+
+    def _choose(self, asked: Asked) -> dict[str, list[CppCallback]]:
+        """The callbacks that are asked for, by language."""
+        given = asked.nodes, asked.topics, asked.callbacks, asked.kinds, asked.places
+        return {language: [one for one in rows if is_asked(one, *given)] for language, rows in self._callbacks.items()}
+
+    def _list_publishing(self, topics: Collection[str]) -> set[tuple[str, int]]:
+        """Places of what makes the statements run that publish on some topics: of subscriptions, timers, services, and
+        of the programs themselves."""
+        statements = [one for one in self.graph.publishes if one.topic in topics]
+        found = {(way.trigger.path, way.trigger.line) for one in statements for way in one.by}
+        untold = {one.path for one in statements if not one.by}
+        rows = (one for each in self._callbacks.values() for one in each if one.kind in KINDS)
+        return found | {(one.path, one.line) for one in rows if _get_file(one) in untold}
+
+    def explore_publishing(
+        self, topics: Collection[str], jobs: int = 1, progress: Progress | None = None
+    ) -> tuple[CallbackAnswer, ...]:
+        """What was found out about the callbacks that publish on some topics and were not explored yet."""
+        places = self._list_publishing(topics)
+        known = {(target.identity[1], target.identity[2]) for target in self._known.values()}
+        if not places - known:
+            return ()
+        report, _ = self.explore(Asked(kinds=KINDS, places=places - known), jobs=jobs, progress=progress)
+        return report.callbacks
 
     def judge(self, requests: Sequence[Request], jobs: int = 1) -> dict[CallbackKey, Judged]:
         """What follows from messages that callbacks are given, which explore() has met; those that cannot be told are
@@ -188,8 +234,11 @@ class Survey:
         for record in records:
             key = record.callback, record.kind
             if key not in prepared:
-                asked = Asked(callbacks=(record.callback,), kinds=(record.kind,))
-                prepared[key] = [*self._list_cpp(self._open_session(), asked), *self._list_python(asked)]
+                chosen = self._choose(Asked(callbacks=(record.callback,), kinds=(record.kind,)))
+                prepared[key] = [
+                    *self._list_cpp(self._open_session(), chosen["cpp"]),
+                    *self._list_python(chosen["python"]),
+                ]
             rows = prepared[key]
             target = next((one for one in rows if one.answer.path == record.path), rows[0] if rows else None)
             if target is None:
@@ -218,7 +267,7 @@ class Survey:
     def emit_klee(self, asked: Asked, folder: Path) -> list[Path]:
         """Writes the harnesses of the C++ callbacks that are asked for, for KLEE; gives their folders."""
         made: list[Path] = []
-        for number, target in enumerate(self._list_cpp(self._open_session(), asked)):
+        for number, target in enumerate(self._list_cpp(self._open_session(), self._choose(asked)["cpp"])):
             if target.prepared is not None and not target.answer.reason:
                 name = "".join(each if each.isalnum() else "_" for each in target.answer.callback)
                 made.append(target.prepared.emit_klee(folder / f"{number:02d}_{name}").folder)
@@ -232,24 +281,17 @@ class Survey:
         """Commands that send witnesses to a running node."""
         return [command for one in records if (command := format_publish_command(self._definitions, one))]
 
-    def list_places(self, files: Collection[str]) -> frozenset[tuple[str, int]]:
-        """Where callbacks of some files are given to the framework."""
-        rows = [one for each in ("cpp", "python") for one in list_callbacks(self.workspace, self.graph, each)]
-        return frozenset((one.path, one.line) for one in rows if _get_file(one) in files)
-
     # C++.
 
-    def _list_cpp(self, session: HarnessSession, asked: Asked) -> Iterator[_Target]:
-        prepared = session.prepare(
-            nodes=asked.nodes, topics=asked.topics, callbacks=asked.callbacks, kinds=asked.kinds, places=asked.places
-        )
-        for one in prepared:
+    def _list_cpp(self, session: HarnessSession, callbacks: Iterable[CppCallback]) -> Iterator[_Target]:
+        for one in session.prepare_each(callbacks):
             path, line = one.function_place
             answer = CallbackAnswer(
                 one.callback, one.kind, "cpp", path, line, one.message_type, one.topics, one.nodes, self.bounds,
                 one.reason, stood_for=one.stood_for,
             )  # fmt: skip
-            yield _Target(answer, _name_constants(one.constants, self.workspace.ros), one)
+            identity = one.kind, one.path, one.line, one.callback
+            yield _Target(identity, answer, _name_constants(one.constants, self.workspace.ros), one)
 
     # Python.
 
@@ -283,10 +325,8 @@ class Survey:
 
         return Messages(find_section, self.workspace.ros)
 
-    def _list_python(self, asked: Asked) -> Iterator[_Target]:
-        for one in list_callbacks(self.workspace, self.graph, "python"):
-            if not is_asked(one, asked.nodes, asked.topics, asked.callbacks, asked.kinds, asked.places):
-                continue
+    def _list_python(self, callbacks: Iterable[CppCallback]) -> Iterator[_Target]:
+        for one in callbacks:
             function = one.function
             path, line = (function.source.path, function.facts.line) if function is not None else (one.path, one.line)
             answer = CallbackAnswer(
@@ -294,16 +334,16 @@ class Survey:
                 _refuse(one),
             )  # fmt: skip
             if answer.reason:
-                yield _Target(answer, {})
+                yield _Target(_identify(one), answer, {})
                 continue
             module = self._modules.get(f"~{path}")
             if module is None:
-                yield _Target(replace(answer, reason=f"{path} cannot be read"), {})
+                yield _Target(_identify(one), replace(answer, reason=f"{path} cannot be read"), {})
                 continue
             # The top of a module has no name.
             name = one.site.name if one.kind == "main" else one.name
             code = CallbackCode(module, name, line, one.message_type)
-            yield _Target(answer, self._name_python_constants(one.message_type), code=code)
+            yield _Target(_identify(one), answer, self._name_python_constants(one.message_type), code=code)
 
     def _name_python_constants(self, type_: str) -> Mapping[str, Mapping[int, str]]:
         package, _, name = type_.partition("/")
@@ -341,6 +381,15 @@ class Survey:
             messages = self._make_messages()
             messages.asked.update(target.types)
             return replay_witness(place, witness, example.kinds, messages, Path(folder))
+
+
+def _identify(callback: CppCallback) -> tuple[str, str, int, str]:
+    """What tells one callback from the others: kind, where it is given to the framework, name."""
+    return callback.kind, callback.path, callback.line, callback.name
+
+
+def _get_place(answer: CallbackAnswer) -> tuple[str, int, str]:
+    return answer.path, answer.line, answer.callback
 
 
 def _get_file(callback: CppCallback) -> str:
@@ -458,8 +507,10 @@ def _shorten_sent(sent: SentThrough, root: Path) -> SentThrough:
 def _explore_entries(prepared: PreparedCallback, bounds: Bounds) -> Exploration:
     """What comes of the first entry that leads to a verdict; of the first of all where none does."""
     first: Exploration | None = None
-    for entry in (prepared.entry, *(one.name for one in prepared.others)):
+    ways = {prepared.entry: prepared.way, **{one.name: one.way for one in prepared.others}}
+    for entry, way in ways.items():
         found = explore(prepared.ir_texts, entry, bounds, prepared.is_workspace_file)
+        found.is_bare = way == "bare"
         if any(path.result is not Reaction.UNKNOWN for path in found.paths):
             return found
         first = first or found
@@ -475,6 +526,7 @@ def _read_result(answer: CallbackAnswer, result: Evaluated | Died, root: Path) -
     return replace(
         answer, counts=result.counts, fields=result.fields, examples=examples, sent=sent,
         unknown=result.unknown, assumed=result.assumed, left=result.left, seconds=result.seconds,
+        is_bare=result.is_bare,
     )  # fmt: skip
 
 
@@ -497,9 +549,9 @@ def _name_constants(constants: Mapping[str, tuple[str, str]], ros: int) -> Mappi
     """Names of constants by the type of the fields that they are for, `uint8`."""
     found: dict[str, dict[int, str]] = {}
     for name, (type_, value) in constants.items():
+        number = find_integer(type_, ros)
+        key = f"{'int' if number.is_signed else 'uint'}{number.bits}" if number is not None else type_
         with suppress(ValueError):
-            number = find_integer(type_, ros)
-            key = f"{'int' if number.is_signed else 'uint'}{number.bits}" if number is not None else type_
             found.setdefault(key, {}).setdefault(int(value, 0), name)
     return found
 

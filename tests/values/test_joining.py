@@ -147,6 +147,14 @@ def test_the_top_of_a_script_is_followed(tmp_path, value, found):
     assert tuple(one.values for one in answer.mismatches) == found
 
 
+def test_a_message_of_another_type_is_not_received(tmp_path):
+    root = write_scripts(tmp_path, "7", "2")
+    path = root / "machine/scripts/speaker.py"
+    path.write_text(path.read_text().replace("Int32", "Int64"))
+    answer = explore_values(root, bounds=BOUNDS)
+    assert answer.others and not answer.mismatches
+
+
 def run_git(folder: Path, *arguments: str) -> None:
     command = ["git", "-c", "user.name=A", "-c", "user.email=a@example.org", *arguments]
     subprocess.run(command, cwd=folder, check=True, capture_output=True)

@@ -10,8 +10,9 @@ Why it breaks
 
 Severity
     error where the publisher sends this very message without being asked, or because of what it is known to receive,
-    and nothing else decides; warning where what the publisher receives decides, and in rospy; note where the state of
-    the subscriber, or something that is not known, decides.
+    and nothing else decides; warning where what the publisher receives decides, in rospy, in tests, and where launch
+    files start one of the two programs without the other; note where the state of the subscriber, or something that is
+    not known, decides.
 
 Example
     rate_ = 1000 / msg->period;      // a publisher leaves period at 0
@@ -26,7 +27,7 @@ Not reported
 
 from ...values.matching import CRASHING
 from ..vocabulary import Text, Workspace, rule
-from .mismatches import find_of_kind
+from .mismatches import find_diagnostics
 
 
 @rule(
@@ -41,4 +42,4 @@ from .mismatches import find_of_kind
     ),
 )
 def crashing_value(workspace: Workspace):
-    return find_of_kind(workspace, CRASHING)
+    return find_diagnostics(workspace, CRASHING)

@@ -23,7 +23,7 @@ Not reported
 
 from ...values.matching import FRAME
 from ..vocabulary import Text, Workspace, rule
-from .mismatches import find_of_kind
+from .mismatches import find_diagnostics
 
 
 @rule(
@@ -38,4 +38,4 @@ from .mismatches import find_of_kind
     ),
 )
 def frame_mismatch(workspace: Workspace):
-    return find_of_kind(workspace, FRAME)
+    return find_diagnostics(workspace, FRAME)

@@ -21,7 +21,7 @@ Not reported
 
 from ...values.matching import IMPOSSIBLE
 from ..vocabulary import Text, Workspace, rule
-from .mismatches import find_of_kind
+from .mismatches import find_diagnostics
 
 
 @rule(
@@ -35,4 +35,4 @@ from .mismatches import find_of_kind
     ),
 )
 def impossible_branch(workspace: Workspace):
-    return find_of_kind(workspace, IMPOSSIBLE)
+    return find_diagnostics(workspace, IMPOSSIBLE)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from ...model.package import find_folder_role
 from ...values.joining import find_mismatches, find_unit_mismatches
 from ...values.matching import UNIT, Mismatch
 from ..vocabulary import At, Diagnostic, Doubt, Value, Workspace
@@ -9,7 +10,7 @@ from ..vocabulary import At, Diagnostic, Doubt, Value, Workspace
 _DOUBTS = {"error": (), "warning": (Doubt.INCOMPLETE,), "note": (Doubt.UNCHECKED,)}
 
 
-def find_of_kind(workspace: Workspace, kind: str) -> Iterator[Diagnostic]:
+def find_diagnostics(workspace: Workspace, kind: str) -> Iterator[Diagnostic]:
     """The mismatches of a rule. A crash is reported where it happens, what waits for a value where it waits, and all
     else where it is sent."""
     for one in find_unit_mismatches(workspace) if kind == UNIT else find_mismatches(workspace):
@@ -18,7 +19,16 @@ def find_of_kind(workspace: Workspace, kind: str) -> Iterator[Diagnostic]:
         path, line = _find_place(one)
         package = next((each.name for each in _list_packages(workspace, path)), "")
         variant = "standard" if kind == UNIT and one.subscriber is None else ""
-        yield Diagnostic(At(path, line), one.field, package, describe(one), variant, _DOUBTS[one.severity])
+        doubts = (*_DOUBTS[one.severity], *_list_role_doubts(one, path))
+        yield Diagnostic(At(path, line), one.field, package, describe(one), variant, doubts)
+
+
+def _list_role_doubts(one: Mismatch, path: str) -> list[Doubt]:
+    """What speaks against a finding whose publisher or subscriber is a test or an example."""
+    paths = [path, *(place.path for place in (one.sender.places if one.sender is not None else ()))]
+    roles = {find_folder_role(each) for each in paths}
+    found = {"test": Doubt.TEST, "aside": Doubt.EXAMPLE}
+    return [doubt for role, doubt in found.items() if role in roles]
 
 
 def _find_place(one: Mismatch) -> tuple[str, int]:

@@ -25,7 +25,7 @@ Not reported
 
 from ...values.matching import UNHANDLED
 from ..vocabulary import Text, Workspace, rule
-from .mismatches import find_of_kind
+from .mismatches import find_diagnostics
 
 
 @rule(
@@ -40,4 +40,4 @@ from .mismatches import find_of_kind
     ),
 )
 def unhandled_value(workspace: Workspace):
-    return find_of_kind(workspace, UNHANDLED)
+    return find_diagnostics(workspace, UNHANDLED)

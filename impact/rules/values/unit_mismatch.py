@@ -25,7 +25,7 @@ Not reported
 
 from ...values.matching import UNIT
 from ..vocabulary import Text, Workspace, rule
-from .mismatches import find_of_kind
+from .mismatches import find_diagnostics
 
 
 @rule(
@@ -45,4 +45,4 @@ from .mismatches import find_of_kind
     },
 )
 def unit_mismatch(workspace: Workspace):
-    return find_of_kind(workspace, UNIT)
+    return find_diagnostics(workspace, UNIT)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import itertools
 import re
 import tempfile
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -102,7 +101,7 @@ class HarnessSession:
         packages = [package.path for package in workspace]
         self.workshop = Workshop(root, folder, self.definitions, packages, self.bounds, self._is_own, self._list_bases)
         self._further: dict[str, tuple[SourceUnit, str] | str] = {}
-        self._units = itertools.count()
+        self._units = 0
 
     def _is_own(self, scope: str, name: str) -> bool:
         code = self.reader.code
@@ -147,8 +146,13 @@ class HarnessSession:
         nodes: by id or its last part; topics: by name; callbacks: by name or its last parts; places: path
         and line of the calls that make them."""
         asked = [one for one in self.callbacks if is_asked(one, nodes, topics, callbacks, kinds, places)]
-        for source, rows in group_pairs((self.writer.choose_source(one), one) for one in asked).items():
-            yield from self._prepare_source(f"unit{next(self._units)}", source, rows)
+        yield from self.prepare_each(asked)
+
+    def prepare_each(self, callbacks: Iterable[CppCallback]) -> Iterator[PreparedCallback]:
+        """The same for some of `callbacks`."""
+        for source, rows in group_pairs((self.writer.choose_source(one), one) for one in callbacks).items():
+            self._units += 1
+            yield from self._prepare_source(f"unit{self._units}", source, rows)
 
     def _prepare_source(self, name: str, source: str, rows: list[CppCallback]) -> Iterator[PreparedCallback]:
         if not find_clang():

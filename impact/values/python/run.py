@@ -106,12 +106,12 @@ class PythonRun:
         self.steps = 0
         self._fresh: dict[str, int] = {}
         self._solving = solving if solving is not None else Solving(deadline, inputs)
+        self.program: ProgramRounds | None = None
+        """Where what runs is a program from its start, and no callback."""
         self._prepared = prepared if prepared is not None else []
         self._asked = 0
         self.is_preparing = False
         """Whether a node is being made: no way is opened then, and what is undecided raises NotModelledError."""
-        self.program: ProgramRounds | None = None
-        """Where what runs is a program from its start, and no callback."""
 
     # Decisions.
 

@@ -1,9 +1,8 @@
 """What is the same in many nodes is worked out once, and what is not stays apart."""
 
 import pytest
-
-from rosimpact.impact.model.flow import values as flow_values
 from joining import ends, joined
+from rosimpact.impact.model.flow import values as flow_values
 
 SHARED = """
     #include <rclcpp/rclcpp.hpp>
