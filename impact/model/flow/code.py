@@ -197,8 +197,9 @@ def _list_changes(fn: Fn) -> Iterator[Assignment]:
     strings = {row.name for row in fn.facts.parameters if _is_string_type(row.type)}
     strings.update(row.target for row in fn.facts.assignments if _is_string_type(row.type))
     for path, row in changed:
-        # No container but a string has `replace`.
-        if path in strings or (isinstance(row, FlowCall) and row.callee == f"{path}.replace"):
+        # No container but a string has `replace`; and what holds characters or numbers is no list of names.
+        own = row.callee == f"{path}.replace" if isinstance(row, FlowCall) else row.value.kind == "number"
+        if path in strings or own:
             yield Assignment(path, FlowExpr("other", f"{path} changed in place"), row.line, row.guard)
 
 

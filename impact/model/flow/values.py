@@ -285,8 +285,9 @@ class FlowValues:
             yield FlowValue(None, "unresolved", "too many steps")
             return
         kind = value.kind
-        if kind == "number" and value.text[:1] == "'" and len(value.text) == 3:
-            yield FlowValue(value.text[1])
+        if kind == "number" and value.text[:1] == "'":
+            one = _read_character(value.text)
+            yield FlowValue(one) if one else FlowValue(None, "unresolved", f"`{value.text}` is not followed")
         elif kind in ("text", "number"):
             yield FlowValue(value.text)
         elif kind == "name":
@@ -1355,6 +1356,14 @@ def _mentions(value: FlowExpr, path: str) -> bool:
 def _restore_alone(values: list[FlowValue]) -> list[FlowValue]:
     """Values, where nothing is known beside which what is not known could hold, without the mark."""
     return values if any(one.text is not None for one in values) else [one._replace(beside=False) for one in values]
+
+
+def _read_character(text: str) -> str:
+    """The character that a literal of C++ is; empty where it is none that names can have."""
+    inner = text[1:-1]
+    if inner[:1] == "\\":
+        inner = {"\\": "\\", "'": "'", '"': '"'}.get(inner[1:], "")
+    return inner if len(inner) == 1 and inner.isprintable() else ""
 
 
 def _is_string(value: FlowExpr) -> bool:
