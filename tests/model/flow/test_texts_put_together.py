@@ -68,7 +68,6 @@ IN_CPP = [
     ("char name[3]; name[0] = 'q';", "std::string(name)", "?"),
     ("", "std::string(\"/a\") + '\\0'", "?"),
     ("", "std::string(\"/a\") + 'b'", "/ab"),
-    ('std::vector<std::string> names(2); names[0] = "/a";', "names[0]", "/a"),
     ('kept_.replace(0, 1, "x");', '"/" + kept_', "?"),
     ("", "std::string(3, 'x')", "?"),
     ('char name[50]; snprintf(name, sizeof(name), "/imu%s", find());', "name", "?"),
