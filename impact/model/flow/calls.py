@@ -265,18 +265,18 @@ class Calls:
             last = get_tail(call.callee)
             if last in ("make_shared", "make_unique") and call.types:
                 kind = code.resolve_written(call.types, source, scope)
-                yield kind.name, structs.replace(call, types=", ".join(kind.arguments), returned=False)
+                yield _find_known_name(kind), structs.replace(call, types=", ".join(kind.arguments), returned=False)
             elif last == "make_shared" and "::" in call.callee:
                 yield code.resolve_name(get_outer(call.callee), source, scope), call
             elif cpp and last[:1].isupper() and "::" in call.callee and "." not in call.callee:
                 kind = code.resolve_written(call.callee, source, scope)
                 types = ", ".join(kind.arguments)
-                yield kind.name, call if call.types else structs.replace(call, types=types, returned=False)
+                yield _find_known_name(kind), call if call.types else structs.replace(call, types=types, returned=False)
             for argument in call.arguments if cpp else ():
                 for make in _list_nested(argument) if argument.parts or argument.kind == "make" else ():
                     target = get_outer(call.callee) if last == "reset" else ""
                     kind = code.resolve_written(make.text, source, scope)
-                    yield kind.name, _make_call(kind, make.text, make.parts, call, target)
+                    yield _find_known_name(kind), _make_call(kind, make.text, make.parts, call, target)
             if last and not cpp:
                 yield from ((name, call) for name in self._list_made_in_python(fn, call, last))
         yield from self._list_made_by_members(fn)
@@ -289,13 +289,14 @@ class Calls:
             for make in _list_nested(value) if value.parts or value.kind == "make" else ():
                 if make.text:
                     kind = code.resolve_written(make.text, source, scope)
-                    yield kind.name, _make_call(kind, make.text, make.parts, each, each.target)
+                    yield _find_known_name(kind), _make_call(kind, make.text, make.parts, each, each.target)
             if value.kind == "make" and value.text:
                 continue
             whole = value.kind in ("list", "make")
             if whole or (value.kind in ("name", "text", "call") and each.target.startswith("this.")):
                 kind = self._find_initialised_type(fn, each.target)
-                yield kind.name, _make_call(kind, kind.name, value.parts if whole else (value,), each, each.target)
+                given = value.parts if whole else (value,)
+                yield _find_known_name(kind), _make_call(kind, kind.name, given, each, each.target)
 
     def _list_made_by_members(self, fn: Fn) -> Iterator[tuple[str, FlowCall]]:
         """Members that a class has by value, or makes where they stand, and that its constructors do not initialise,
@@ -319,14 +320,14 @@ class Calls:
             if given is not None and given.kind == "make" and given.text and target not in begun:
                 kind = self.code.resolve_written(given.text, owner.source, owner.name)
                 types = ", ".join(kind.arguments)
-                yield kind.name, FlowCall(kind.name, given.parts, member.line, 0, -1, types, target)
+                yield _find_known_name(kind), FlowCall(kind.name, given.parts, member.line, 0, -1, types, target)
             elif member.value is None and target not in begun and "*" not in member.type and "&" not in member.type:
                 kind = self.code.resolve_written(member.type, owner.source, owner.name)
                 # What is left is a pointer: `Client<T>::SharedPtr`.
                 whole = "<" not in member.type or member.type.rstrip().endswith(">")
                 if whole and parse_flow_type(member.type).name == member.type.partition("<")[0]:
                     types = ", ".join(kind.arguments)
-                    yield kind.name, FlowCall(kind.name, (), fn.facts.line, 0, -1, types, target)
+                    yield _find_known_name(kind), FlowCall(kind.name, (), fn.facts.line, 0, -1, types, target)
 
     def _list_made_in_python(self, fn: Fn, call: FlowCall, last: str) -> Iterator[str]:
         if call.callee == "super().__init__":
@@ -399,6 +400,11 @@ class Calls:
 
 _STAND_FOR_NODES = frozenset(("node", "handle", "image_transport", "cloud_transport"))
 _NODES = frozenset(("node", "nh", "n", "pnh", "private_nh", "node_handle", "nodehandle", "parent", "node_ptr"))
+
+
+def _find_known_name(kind: FlowType) -> str:
+    """The name of a type; of a class of the code the whole one, so that it is not taken for another's of that name."""
+    return kind.cls.name if kind.cls is not None and "::" in kind.cls.name else kind.name
 
 
 def _make_call(

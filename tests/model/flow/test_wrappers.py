@@ -136,3 +136,28 @@ def test_a_helper_of_the_workspace_that_hands_on_the_name_beside_a_node():
     """
     found = graph({"deck/util.hpp": helper, "deck/dock.cpp": code})
     assert [(one.path, one.name) for one in found.parameters] == [("deck/dock.cpp", "speed")]
+
+
+@pytest.mark.parametrize(("space", "names"), [("serial", set()), ("pcl_ros", {"/b"})])
+def test_a_class_of_the_workspace_that_is_called_like_a_wrapper(space, names):
+    """Its own class of another namespace is none; the wrapper itself, in the workspace, is one."""
+    wrapper = f"""
+        namespace {space} {{
+        template <typename T>
+        class Publisher {{
+         public:
+          Publisher(ros::NodeHandle& n, const std::string& topic, int queue) {{}}
+        }};
+        }}
+    """
+    main = f"""
+        #include "publisher.hpp"
+        using namespace {space};
+        int main(int c, char** v) {{
+          ros::init(c, v, "hub");
+          ros::NodeHandle n;
+          auto b = std::make_shared<Publisher<pcl::PointXYZ>>(n, "b", 1);
+        }}
+    """
+    found = graph({"p/publisher.hpp": wrapper, "p/hub.cpp": main}, 1)
+    assert {name for _, name, _ in ends(found, "publisher")} - {"/rosout"} == names
