@@ -13,6 +13,8 @@ It reads bitcode of the clang that it was built with: --clang clang++-14 --link 
 
 usage: values.py [WORKSPACE...] [--klee KLEE] [--klee-include FOLDER] [--clang CLANG] [--link LINK] [--seconds 30]
                  [--replay] [--out FACTS.jsonl]
+       values.py --study FACTS.jsonl... --out notebooks/data/values.jsonl
+                 what the notebook reads: such facts, and the callbacks of benchmarks/values
 """
 
 from __future__ import annotations
@@ -38,13 +40,17 @@ from rosimpact.impact.values.answers import CallbackAnswer
 from rosimpact.impact.values.outcomes import Bounds, Reaction
 from rosimpact.impact.values.survey import Asked, Survey
 
+SETS = Path(__file__).parent / "values"
 OWN = Path(__file__).parents[1] / "tests" / "values" / "callbacks"
 NO_KLEE = "KLEE is not installed: --klee names it, see the top of this file"
 _ERROR = re.compile(r"^Error: (?P<text>.*)$|^File: (?P<path>.*)$|^[Ll]ine: (?P<line>\d+)$", re.MULTILINE)
-_FRAME = re.compile(r"^\s+#\S+ .* at (?P<path>/\S+?):(?P<line>\d+)$", re.MULTILINE)
+_FRAME = re.compile(r"^\s+#\S+ in .* at (?P<path>\S+?):(?P<line>\d+)$", re.MULTILINE)
+_SOURCES = (".cpp", ".cc", ".cxx", ".h", ".hpp")
 _REACTIONS = {"handled": Reaction.HANDLED, "log": Reaction.LOG_ONLY, "ignored": Reaction.IGNORED}
 _KINDS = (
-    (r"div(ide|ision) by zero|divrem", "division by zero"), (r"ASSERTION|assertion of libstdc", "failed assertion"),
+    # One word of KLEE's for both.
+    (r"division overflow|div(ide|ision) by zero", "division by zero"),
+    (r"ASSERTION|assertion of libstdc", "failed assertion"),
     (r"outside the range|float.cast", "float that no integer can hold"), (r"overflow", "signed overflow"),
     (r"shift", "shift by too many bits"), (r"std::|exception", "uncaught exception"), (r"abort", "abort"),
     (r"null pointer", "null pointer"), (r"out of bound|index-out-of-bounds|bounds", "index out of range"),
@@ -148,9 +154,12 @@ def read_error(text: str, suffix: str, workspace: Path) -> Crash:
     first = re.search(r"^File: (.*)\n[Ll]ine: (\d+)", text, re.MULTILINE)
     if first is not None:
         places.insert(0, (first[1], int(first[2])))
+    sources = [path.relative_to(workspace).as_posix() for path in workspace.rglob("*") if path.suffix in _SOURCES]
     for path, line in places:
-        if path.startswith(f"{workspace}/"):
-            return Crash(kind, path.removeprefix(f"{workspace}/"), line)
+        # KLEE leaves parts out at the beginning of some paths.
+        for source in sources:
+            if f"/{path.lstrip('/')}".endswith(f"/{source}") and f"{workspace}/{source}".endswith(path):
+                return Crash(kind, source, line)
     return Crash(kind, "", 0)
 
 
@@ -212,6 +221,50 @@ def summarize(records: list[dict]) -> list[str]:
     ]
 
 
+_TOLD = ("explored", "complete", "ways", "seconds")
+
+
+def list_real() -> list[dict]:
+    """The callbacks of real repositories that readers judged (benchmarks/values), with what the tool said of them."""
+    found: list[dict] = []
+    for drawn in sorted(SETS.glob("*.drawn.jsonl")):
+        name = drawn.name.partition(".")[0]
+        said = {_identify(row): row for row in _read_rows(SETS / f"{name}.said.jsonl")}
+        judged = {
+            (r["repo"], r["path"], r["line"], r["kind"]): r["true"] for r in _read_rows(SETS / f"{name}.verdicts.jsonl")
+        }
+        for row in _read_rows(drawn):
+            told = said.get(_identify(row))
+            if told is None:
+                continue
+            crashes = [
+                {**one, "true": judged.get((row["repo"], one["path"], one["line"], one["kind"]))}
+                for one in told["crashes"]
+            ]
+            found.append({
+                "of": "real", "set": name, "repo": row["repo"], "callback": row["callback"],
+                "language": "cpp" if row["path"].endswith((".cpp", ".cc", ".cxx", ".hpp", ".h")) else "python",
+                "opaque": bool(row.get("opaque")),
+                "read": {key: row.get(key) for key in ("handles", "ignores", "logs", "crashes")},
+                "said": {**{key: told.get(key) for key in _TOLD}, "crashes": crashes},
+            })  # fmt: skip
+    return found
+
+
+def _identify(row: dict) -> tuple:
+    return row["repo"], row["path"], row["line"], row["callback"]
+
+
+def _read_rows(path: Path) -> list[dict]:
+    return [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+
+
+def write_study(facts: list[Path], out: Path) -> None:
+    """Writes what the notebook reads."""
+    rows = [{"of": "harness", **row} for path in facts for row in _read_rows(path)]
+    out.write_text("".join(json.dumps(row) + "\n" for row in (*rows, *list_real())))
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("workspaces", nargs="*", type=Path)
@@ -222,7 +275,11 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=30.0)
     parser.add_argument("--replay", action="store_true")
     parser.add_argument("--out", type=Path)
+    parser.add_argument("--study", type=Path, nargs="+")
     options = parser.parse_args()
+    if options.study:
+        write_study(options.study, options.out)
+        return
     records: list[dict] = []
     for workspace in options.workspaces or [OWN / name for name in ("ten", "roscpp", "rclcpp")]:
         root = workspace.resolve()
@@ -231,9 +288,9 @@ def main() -> None:
             for answer, harness in zip(answers, harnesses, strict=True):
                 record = {"workspace": root.name, **describe(answer, run_klee(harness, root, options))}
                 records.append(record)
+                if options.out is not None:
+                    options.out.write_text("".join(json.dumps(one) + "\n" for one in records))
                 print("\n".join(render(record)), flush=True)
-    if options.out is not None:
-        options.out.write_text("".join(json.dumps(one) + "\n" for one in records))
     print("\n".join(["", *summarize(records)]))
     sys.exit(0)
 

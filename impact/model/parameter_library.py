@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import posixpath
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from ...edges.groups import group_pairs
 from ...edges.memory import cache_in_derived
@@ -86,15 +86,19 @@ def _read_terms(name: str, type_: str, given: Mapping[str, ParameterEntry], path
     return ParameterTerms(name, word, tuple(limits), choices, path, given["type"].line)
 
 
-def find_terms(declared: Mapping[str, ParameterTerms], name: str) -> ParameterTerms | None:
-    """What a declared parameter takes, by the name that is set."""
+def find_terms(
+    declared: Mapping[str, ParameterTerms], name: str, several: Sequence[tuple[list[str], ParameterTerms]]
+) -> ParameterTerms | None:
+    """What a declared parameter takes, by the name that is set. several: as list_open() gives them."""
     if name in declared:
         return declared[name]
     parts = name.split(".")
-    for known, terms in declared.items():
-        if "*" not in known:
-            continue
-        pattern = known.split(".")
+    for pattern, terms in several:
         if len(pattern) == len(parts) and all(one in ("*", part) for one, part in zip(pattern, parts, strict=True)):
             return terms
     return None
+
+
+def list_open(declared: Mapping[str, ParameterTerms]) -> list[tuple[list[str], ParameterTerms]]:
+    """Of declared parameters those that stand for several, each with the parts of its name."""
+    return [(known.split("."), terms) for known, terms in declared.items() if "*" in known]

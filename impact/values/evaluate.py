@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import NamedTuple
-
-import z3
 
 from .answers import CallbackExample, FieldSets, SentThrough, SentValues
 from .narrowing import ParameterValues, list_sent_ways, narrow_to_parameters
-from .outcomes import CallbackPath, CodeLine, Exploration, InputKind, Reaction, Sent, SymbolicInput
-from .projection import FieldValues, make_witness, project_fields
-from .sent_values import project_sent_number
+from .outcomes import CallbackPath, CodeLine, Exploration, InputKind, Reaction, Sent
+from .projection import make_witness, project_fields
+from .sent_values import project_sent
 
 _MOST_EXAMPLES = 24
 _MOST_SENT_FIELDS = 60
@@ -106,7 +103,7 @@ def list_sent(exploration: Exploration, seconds: float) -> list[SentThrough]:
         fields: list[SentValues] = []
         for path in _list_leaves(kinds)[:_MOST_SENT_FIELDS]:
             kind = kinds.get(path) or (InputKind.CHARACTER, 8, False)
-            values = _project_sent(exploration, rows, path, kind, seconds / 10)
+            values = project_sent(exploration, rows, path, kind, seconds / 10)
             if values is not None:
                 name = path if path in kinds else f"{path}.size"
                 everywhere = all(name in one.values for _, one in rows)
@@ -125,51 +122,4 @@ def _list_leaves(kinds: Mapping[str, tuple[InputKind, int, bool]]) -> list[str]:
             found.append(name.removesuffix(".size"))
         elif kind[0] is not InputKind.CHARACTER:
             found.append(name)
-    return found
-
-
-def _project_sent(
-    exploration: Exploration, rows: list[tuple[CallbackPath, Sent]], path: str, kind: tuple[InputKind, int, bool],
-    seconds: float,
-) -> FieldValues | None:  # fmt: skip
-    """The values of one field: of a variable that equals what each way sends."""
-    name = "sent.value"
-    sort = kind[0]
-    if sort is not InputKind.CHARACTER:
-        return project_sent_number(exploration, rows, path, seconds)
-    added: dict[str, SymbolicInput] = {}
-    paths: list[CallbackPath] = []
-    for way, one in rows:
-        parts = _list_parts(one, path)
-        terms: list[z3.BoolRef] = []
-        for suffix, leaf, (own, width, signed) in parts:
-            value = one.values.get(leaf)
-            if value is None:
-                break
-            known = added.get(name + suffix)
-            if known is None:
-                term = z3.BitVec(name + suffix, width)
-                known = added[name + suffix] = SymbolicInput(name + suffix, own, width, signed, term, 1 << 20)
-            given = z3.BitVecVal(value, width) if isinstance(value, int) else value
-            if given.size() != width:
-                break
-            terms.append(known.term == given)
-        else:
-            condition = (*way.condition, *terms)
-            paths.append(replace(way, result=Reaction.HANDLED, condition=condition, example={}, shown_by=()))
-    if not paths:
-        return None
-    asked = replace(exploration, inputs={**exploration.inputs, **added}, paths=paths)
-    for one in project_fields(asked, seconds, only=name):
-        return one.values.get(Reaction.HANDLED)
-    return None
-
-
-def _list_parts(sent: Sent, path: str) -> list[tuple[str, str, tuple[InputKind, int, bool]]]:
-    """The size and the bytes of a text that is sent: what comes behind its name, its path, its kind."""
-    found: list[tuple[str, str, tuple[InputKind, int, bool]]] = [(".size", f"{path}.size", (InputKind.SIZE, 64, False))]
-    index = 0
-    while f"{path}[{index}]" in sent.values:
-        found.append((f"[{index}]", f"{path}[{index}]", (InputKind.CHARACTER, 8, False)))
-        index += 1
     return found

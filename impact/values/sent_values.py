@@ -1,4 +1,4 @@
-"""What a callback publishes: the values of a field that is no text.
+"""What a callback publishes: the values of one field, over all ways that publish it.
 
 Least and greatest values are found by asking for something beyond those that are known, so few questions are needed
 where a value is clamped. A set of few values is listed.
@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import z3
@@ -17,10 +17,11 @@ import z3
 from .ir.ranges import Ranges, narrow_floats
 from .ir.solving import SolverTimeout, Solving
 from .ir.terms import make_float, pack_float, read_float_bits, read_signed, unpack_float
-from .outcomes import CallbackPath, Exploration, InputKind, Sent
-from .projection import FieldValues, Number, make_solving, merge_spans
+from .outcomes import CallbackPath, Exploration, InputKind, Reaction, Sent, SymbolicInput
+from .projection import FieldValues, Number, make_solving, merge_spans, project_fields
 
 _FLOATS = (InputKind.FLOAT32, InputKind.FLOAT64)
+_SENT = "sent.value"
 _FEW = 8
 _TRIED = 12
 _STEPS = 12
@@ -37,10 +38,14 @@ class _Collected:
     terms: list[tuple[CallbackPath, z3.BitVecRef]] = field(default_factory=list)
 
 
-def project_sent_number(
-    exploration: Exploration, rows: Sequence[tuple[CallbackPath, Sent]], name: str, seconds: float
-) -> FieldValues | None:
-    """The values of one field that is no text, over paths that send it; None where none says what it sends."""
+def project_sent(
+    exploration: Exploration, rows: Sequence[tuple[CallbackPath, Sent]], name: str, kind: tuple[InputKind, int, bool],
+    seconds: float,
+) -> FieldValues | None:  # fmt: skip
+    """The values of one field, over paths that send it; None where none says what it sends. kind: CHARACTER for a
+    text, as a whole."""
+    if kind[0] is InputKind.CHARACTER:
+        return _project_text(exploration, rows, name, seconds)
     known = [(path, sent) for path, sent in rows if name in sent.values]
     if not known:
         return None
@@ -52,6 +57,41 @@ def project_sent_number(
         else:
             collected.terms.append((path, value))
     return _find_values(collected, make_solving(exploration, time.monotonic() + seconds))
+
+
+def _project_text(
+    exploration: Exploration, rows: Sequence[tuple[CallbackPath, Sent]], name: str, seconds: float
+) -> FieldValues | None:
+    """A text is projected as one that is received is: variables equal its size and its bytes on each way."""
+    added: dict[str, SymbolicInput] = {}
+    paths: list[CallbackPath] = []
+    for way, one in rows:
+        terms = list(_tie_text(one, name, added))
+        if terms and all(term is not None for term in terms):
+            condition = (*way.condition, *[term for term in terms if term is not None])
+            paths.append(replace(way, result=Reaction.HANDLED, condition=condition, example={}, shown_by=()))
+    if not paths:
+        return None
+    asked = replace(exploration, inputs={**exploration.inputs, **added}, paths=paths)
+    found = next(iter(project_fields(asked, seconds, only=_SENT)), None)
+    return found.values.get(Reaction.HANDLED) if found is not None else None
+
+
+def _tie_text(sent: Sent, name: str, added: dict[str, SymbolicInput]) -> Iterator[z3.BoolRef | None]:
+    """That variables, which are added, equal the size and the bytes of a text; None for what is not known."""
+    leaves = [(".size", InputKind.SIZE, 64)]
+    while f"{name}[{len(leaves) - 1}]" in sent.values:
+        leaves.append((f"[{len(leaves) - 1}]", InputKind.CHARACTER, 8))
+    for suffix, kind, bits in leaves:
+        value = sent.values.get(name + suffix)
+        if value is None:
+            yield None
+            return
+        path = _SENT + suffix
+        if path not in added:
+            added[path] = SymbolicInput(path, kind, bits, False, z3.BitVec(path, bits), 1 << 20)
+        given = z3.BitVecVal(value, bits) if isinstance(value, int) else value
+        yield added[path].term == given if given.size() == bits else None  # pyright: ignore[reportReturnType]
 
 
 def _find_values(collected: _Collected, solving: Solving) -> FieldValues:
@@ -86,7 +126,7 @@ def _list_few(collected: _Collected, solving: Solving) -> set[int] | None:
     found = set(collected.numbers)
     for path, term in collected.terms:
         conditions = solving.select_related(path.condition, solving.find_traits(term).names)
-        if len(found | _try_values(solving, path, term, conditions)) > _FEW:
+        if len(found | _find_some(solving, path, term, conditions)) > _FEW:
             return None
         own: list[z3.BoolRef] = []
         while True:
@@ -104,7 +144,7 @@ def _list_few(collected: _Collected, solving: Solving) -> set[int] | None:
     return found
 
 
-def _try_values(solving: Solving, path: CallbackPath, term: z3.BitVecRef, conditions: Sequence[z3.BoolRef]) -> set[int]:
+def _find_some(solving: Solving, path: CallbackPath, term: z3.BitVecRef, conditions: Sequence[z3.BoolRef]) -> set[int]:
     """Values of a term that are had without the solver, by small numbers for one of its inputs."""
     found: set[int] = set()
     for name in sorted(solving.find_traits(term).names)[:3]:

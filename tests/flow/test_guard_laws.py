@@ -16,7 +16,8 @@ BOOLEANS = ("a", "b_", "s.ok")
 NUMBERS = ("x", "y")
 # What conditions with such constants tell apart lies within these.
 CONSTANTS = st.integers(-1, 1)
-FRACTIONS = [number / 4 for number in range(-17, 18)]
+# Between 1/2 and 1, two numbers of which one is the smaller: 2 * x > 1, x < y, y < 1.
+FRACTIONS = [number / 8 for number in range(-34, 35) if number % 2 == 0 or abs(number) < 18]
 WHOLES = range(-4, 5)
 SUMS = {
     "x": lambda values: values["x"],

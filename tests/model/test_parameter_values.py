@@ -2,7 +2,7 @@
 
 import pytest
 from rosimpact.impact.facts.launch.parameter_files import extract
-from rosimpact.impact.model.parameter_library import find_terms, read_library
+from rosimpact.impact.model.parameter_library import find_terms, list_open, read_library
 from rosimpact.impact.model.parameter_values import (
     ParameterTerms,
     find_broken_limit,
@@ -119,4 +119,4 @@ def test_files_of_generate_parameter_library():
 )
 def test_names_with_parts_that_parameters_name(name, found):
     ((_, terms),) = read_library(extract(LIBRARY.encode()), "arm.yaml")
-    assert (find_terms(terms, name) is not None) == found
+    assert (find_terms(terms, name, list_open(terms)) is not None) == found

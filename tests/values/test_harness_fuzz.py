@@ -88,3 +88,11 @@ def test_klee_is_given_bitcode(prepared, tmp_path):
     assert (written.folder / "klee_runtime.bc").stat().st_size > 1000
     assert calls.read_text().splitlines()[0] == "link harness.bc klee_runtime.bc -o whole.bc"
     assert "--libc=klee" in calls.read_text()
+
+
+@needs_clang
+def test_klee_is_told_sizes_one_by_one_and_reports_reactions(prepared, tmp_path):
+    written = prepared.by_name["on_period"].emit_klee(tmp_path / "written")
+    assert "--ubsan-runtime" in written.script.read_text()
+    runtime = (written.folder / "klee_runtime.cpp").read_text()
+    assert [word for word in ("handled.err", "log.err", "ignored.err") if f'"{word}"' not in runtime] == []

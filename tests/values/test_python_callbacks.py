@@ -408,3 +408,116 @@ def test_a_module_that_cannot_be_loaded_is_said(tmp_path):
     seen = replay_witness(place, Witness({}, Reaction.HANDLED, None, ("", 0)), {}, messages, tmp_path)
     assert seen.reason == "RuntimeError: no robot" and seen.place == ("driver.py", 2)
     assert not is_confirmed(Witness({}, Reaction.HANDLED, None, ("", 0)), seen)
+
+
+ARRAYS = {
+    "self.grid[:, 0] = msg.linear.x, msg.linear.y, msg.linear.z": ("geometry_msgs/Twist", {Reaction.HANDLED}),
+    "self.row[:] = msg.ranges": ("sensor_msgs/LaserScan", {Reaction.HANDLED, Reaction.CRASH}),
+    "self.row[msg.data] = 1.0": ("std_msgs/UInt8", {Reaction.HANDLED, Reaction.CRASH}),
+    "if self.grid[1, msg.data] is None:\n        pass": ("std_msgs/UInt8", {Reaction.IGNORED, Reaction.CRASH}),
+    "own = [1, 2, 3]\n    own[0:2] = [msg.data]\n    self.pub.publish(own[1])": ("std_msgs/UInt8", {Reaction.HANDLED}),
+    "self.table['last'] = msg.data": ("std_msgs/UInt8", {Reaction.HANDLED}),
+}
+
+
+@pytest.mark.parametrize("statement", ARRAYS)
+def test_elements_of_arrays_are_set_by_slices(statement, tmp_path):
+    """numpy is not installed everywhere: what is found is checked, not replayed."""
+    message, reactions = ARRAYS[statement]
+    text = HEAD.replace("import math\n", "import math\nimport numpy as np\n").replace(
+        "self.last = 0\n", "self.last = 0\n        self.grid = np.zeros((3, 4))\n        self.row = np.ones(2)\n"
+    )
+    text += f"""
+    def callback(self, msg):
+        {statement.replace(chr(10), chr(10) + "    ")}
+
+    def report(self):
+        self.pub.publish(int(self.grid[0, 0] + self.row[0] + self.table['last']))
+"""
+    sections = {name: extract(found.encode(), "msg").sections[0] for name, found in MESSAGES.items()}
+    module = ModuleCode("driver", "driver.py", ast.parse(text))
+    code = CallbackCode(module, "Driver.callback", 0, message)
+    found = explore_callback(code, Messages(sections.get, 1), lambda name: None, Bounds())
+    assert {path.result for path in found.paths} == reactions
+    assert {path.crash for path in found.paths} <= {None, CrashKind.INDEX, CrashKind.EXCEPTION}
+
+
+def test_a_constructor_opens_no_ways_and_what_it_leaves_open_is_any_value(tmp_path):
+    text = HEAD.replace("self.last = 0\n", """self.last = 0
+        self.gain = 1
+        for name in rospy.get_param("~names", []):
+            if name == "fast":
+                self.gain = 5
+        for number in range(12):
+            if rospy.get_param("~wheel%d" % number, False):
+                self.gain = number
+        self.late = None
+        if rospy.get_param("~late", False):
+            self.late = rospy.Publisher("late", Int32, queue_size=1)
+        else:
+            self.late = rospy.Publisher("late", Int32, queue_size=2)
+        while True:
+            self.rate = self.rate + 1
+""")  # fmt: skip
+    body = """
+    def callback(self, msg):
+        if msg.data == 3:
+            self.late.publish(self.gain)
+        elif msg.data == 4 and self.gain > 100:
+            self.pub.publish(1)
+
+    def other(self):
+        return self.gain
+    """
+    text += textwrap.indent(textwrap.dedent(body), "    ")
+    sections = {name: extract(found.encode(), "msg").sections[0] for name, found in MESSAGES.items()}
+    module = ModuleCode("driver", "driver.py", ast.parse(text))
+    code = CallbackCode(module, "Driver.callback", 0, "std_msgs/Int32")
+    found = explore_callback(code, Messages(sections.get, 1), lambda name: None, Bounds())
+    assert found.left == 0
+    counts = Counter(path.result for path in found.paths)
+    assert counts[Reaction.HANDLED] >= 2 and counts[Reaction.IGNORED] >= 1 and counts[Reaction.UNKNOWN] == 0
+    assert {one.name for path in found.paths for one in path.effects} == {"late", "pub"}
+    assert len(found.paths) <= 6
+
+
+@pytest.mark.parametrize("ros, expected", [(1, (0, 127)), (2, None)])
+def test_a_byte_is_signed_in_ros_1_and_no_number_in_rclpy(ros, expected):
+    sections = {"own/Raw": extract(b"byte data\n", "msg").sections[0]}
+    text = "def callback(msg):\n    if msg.data >= 0:\n        raise IndexError('x')\n"
+    module = ModuleCode("driver", "driver.py", ast.parse(text))
+    code = CallbackCode(module, "callback", 0, "own/Raw")
+    found = explore_callback(code, Messages(sections.get, ros), lambda name: None, Bounds())
+    if expected is None:
+        assert not found.inputs
+        return
+    assert (found.inputs["msg.data"].bits, found.inputs["msg.data"].is_signed) == (8, True)
+    assert {path.result for path in found.paths} == {Reaction.CRASH, Reaction.IGNORED}
+
+
+def test_a_number_that_does_not_fit_into_bytes(tmp_path):
+    body = """
+    def callback(self, msg):
+        self.pub.publish(len(msg.data.to_bytes(2, "big", signed=True)))
+    """
+    found, seen = explore(body, "std_msgs/Int32", tmp_path)
+    assert solve(found, Reaction.HANDLED, "msg.data") and solve(found, Reaction.CRASH, "msg.data")
+    assert seen[(Reaction.CRASH, CrashKind.EXCEPTION)] is True
+
+
+def test_an_exception_of_python_that_is_made_and_raised(tmp_path):
+    body = """
+    def callback(self, msg):
+        try:
+            if msg.data == 1:
+                raise ValueError("one")
+            if msg.data == 2:
+                raise KeyError("two")
+        except ValueError as error:
+            rospy.logwarn("%s", error)
+            return
+        self.pub.publish(msg.data)
+    """
+    found, seen = explore(body, "std_msgs/UInt8", tmp_path)
+    assert solve(found, Reaction.LOG_ONLY, "msg.data") == {1} and solve(found, Reaction.CRASH, "msg.data") == {2}
+    assert set(seen.values()) == {True}, seen

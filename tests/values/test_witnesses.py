@@ -4,6 +4,7 @@ import struct
 
 import pytest
 from rosimpact.impact.facts.interface import extract
+from rosimpact.impact.values.field_types import find_integer
 from rosimpact.impact.values.outcomes import CodeLine, CrashKind, Reaction, Witness
 from rosimpact.impact.values.witnesses import (
     WitnessError,
@@ -127,3 +128,15 @@ def test_pytest_is_python(tmp_path):
     compile(text, "test_witnesses.py", "exec")
     assert "target.Node.on_car(MagicMock(), message)" in text and "float('inf')" in text
     assert "importorskip('pkg.node')" in text
+
+
+@pytest.mark.parametrize(
+    "type_, ros, expected",
+    [
+        ("byte", 1, (8, True)), ("byte", 2, (8, False)), ("char", 1, (8, False)), ("char", 2, (8, False)),
+        ("octet", 2, (8, False)), ("int16", 1, (16, True)), ("uint64", 2, (64, False)), ("bool", 1, None),
+        ("float32", 2, None), ("own/Wheel", 2, None),
+    ],
+)  # fmt: skip
+def test_whole_numbers_of_both_generations(type_, ros, expected):
+    assert find_integer(type_, ros) == expected

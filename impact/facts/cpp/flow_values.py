@@ -466,8 +466,9 @@ class FunctionReader:
         operands.reverse()
         signs.reverse()
         lefts.reverse()
-        stream = self.find_stream(operands[0]) if signs[0] == "<<" and all(sign == "<<" for sign in signs) else ""
-        joined = (signs[0] in JOINING or bool(stream)) and self.nesting <= DEEPEST and all(sign == signs[0] for sign in signs)
+        alike = all(sign == signs[0] for sign in signs)
+        stream = self.find_stream(operands[0]) if alike and signs[0] == "<<" else ""
+        joined = alike and (signs[0] in JOINING or bool(stream)) and self.nesting <= DEEPEST
         parts: list[FlowExpr] = []
         outer = guard
         pending: list[Node] = []

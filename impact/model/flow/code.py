@@ -757,7 +757,7 @@ class FlowCode:
             return []
         if all(constant.value is None for constant, _ in found):
             names = {constant.name for constant, _ in found}
-            found = self.list_definitions(names.pop()) if len(names) == 1 else []
+            found = (self.list_definitions(names.pop()) if len(names) == 1 else []) or found
         files = {one.path for _, one in found}
         return found if len(files) < 2 or len({constant.value for constant, _ in found}) == 1 else []
 

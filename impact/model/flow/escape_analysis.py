@@ -12,6 +12,7 @@ from functools import cached_property
 from itertools import chain
 from typing import NamedTuple
 
+from ....edges.memory import cache_method
 from ...facts.flow import FlowExpr
 from ..workspace import Workspace
 from .code import Fn, get_tail, list_made
@@ -137,35 +138,43 @@ class EscapeAnalysis:
 
     def _list_given(self, functions: list[Fn]) -> Iterator[str]:
         """Functions and objects of others that are given the node, and what is loaded by name."""
-        code, calls = self.join.code, self.join.calls
         for fn in functions:
-            python = fn.source.facts.language == "python"
-            for call in fn.facts.calls:
-                last = get_tail(call.callee)
-                if python and self._is_lost(call.callee, fn):
-                    yield f"`{call.callee}` is not followed"
-                use = calls.find_use(fn, call)
-                loads = last in _LOADERS or (python and last in _PYTHON_LOADERS)
-                if loads or (use is not None and use.row.does == "load"):
-                    yield f"`{last}` loads code by name"
-                    continue
-                known = last in _RUNS or (python and last[:1].isupper())
-                # `updater.add("state", this, &A::diagnose)`
-                known = known or (last == "add" and any(argument.kind == "function" for argument in call.arguments))
-                if known or not any(self._is_node(argument, fn) for argument in call.arguments):
-                    continue
-                if not code.list_targets(call.callee, fn) and use is None:
-                    yield f"`{last}` is given the node"
-            for name, arguments, _ in list_made(fn, code):
-                if not python and self._is_unknown(name, fn):
-                    yield f"`{get_tail(name)}` is not followed"
-                if any(self._is_node(argument, fn) for argument in arguments):
-                    kind = code.resolve_written(name, fn.source, fn.scope).name if not python else name
-                    known = code.find_class(kind, fn.source, fn.scope) if kind else None
-                    own = split_name(kind or name)[0] in _OWN or get_tail(name) in _RUNS
-                    table = calls.table.list_objects(kind or name, python) or calls.table.find_kind(kind or name)
-                    if known is None and not own and not table:
-                        yield f"`{get_tail(kind or name)}` is given the node"
+            yield from self._collect_given(fn)
+
+    @cache_method
+    def _collect_given(self, fn: Fn) -> tuple[str, ...]:
+        return tuple(self._list_given_in(fn))
+
+    def _list_given_in(self, fn: Fn) -> Iterator[str]:
+        """Of one function; it may be one of many programs."""
+        code, calls = self.join.code, self.join.calls
+        python = fn.source.facts.language == "python"
+        for call in fn.facts.calls:
+            last = get_tail(call.callee)
+            if python and self._is_lost(call.callee, fn):
+                yield f"`{call.callee}` is not followed"
+            use = calls.find_use(fn, call)
+            loads = last in _LOADERS or (python and last in _PYTHON_LOADERS)
+            if loads or (use is not None and use.row.does == "load"):
+                yield f"`{last}` loads code by name"
+                continue
+            known = last in _RUNS or (python and last[:1].isupper())
+            # `updater.add("state", this, &A::diagnose)`
+            known = known or (last == "add" and any(argument.kind == "function" for argument in call.arguments))
+            if known or not any(self._is_node(argument, fn) for argument in call.arguments):
+                continue
+            if not code.list_targets(call.callee, fn) and use is None:
+                yield f"`{last}` is given the node"
+        for name, arguments, _ in list_made(fn, code):
+            if not python and self._is_unknown(name, fn):
+                yield f"`{get_tail(name)}` is not followed"
+            if any(self._is_node(argument, fn) for argument in arguments):
+                kind = code.resolve_written(name, fn.source, fn.scope).name if not python else name
+                known = code.find_class(kind, fn.source, fn.scope) if kind else None
+                own = split_name(kind or name)[0] in _OWN or get_tail(name) in _RUNS
+                table = calls.table.list_objects(kind or name, python) or calls.table.find_kind(kind or name)
+                if known is None and not own and not table:
+                    yield f"`{get_tail(kind or name)}` is given the node"
 
     def _is_unknown(self, name: str, fn: Fn) -> bool:
         """Whether a class in C++ would be the workspace's own by its namespace, and is not among its classes."""

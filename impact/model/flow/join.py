@@ -295,7 +295,9 @@ class Join:
         does not tell itself on which node it is made."""
         if running.objects is None:
             return True
-        keys = frozenset().union(*(self.objects.find_keys(one, running.functions) for one in through))
+        keys: frozenset[str] = frozenset()
+        for one in through:
+            keys |= self.objects.find_keys(one, running.functions)
         keys = keys or self.objects.find_keys(use, running.functions)
         return bool(keys & running.objects) or (running.others is not None and not keys & running.others)
 
@@ -706,9 +708,7 @@ class Join:
         beside: list[Work] = []
         if all(name.text is None for name in names) and any(name.unpassed for name in names):
             # It comes from code that the node does not run, as far as is known.
-            elsewhere, work = owner.values.record(
-                lambda: self.sites.list_names(site.use, site.prefix, owner.values)
-            )
+            elsewhere, work = owner.values.record(lambda: self.sites.list_names(site.use, site.prefix, owner.values))
             beside.append(work)
             names = tuple(
                 name if name.text is None else name._replace(only_if=_join_conditions(name.only_if, _PASSED))

@@ -384,9 +384,8 @@ class _Comparison:
             had = get_flow(self.before.workspace).systems.get(name)
             if had is not None:
                 paths = [one.path for one in chosen]
-                one = self._compare_started(
-                    (paths[0], had[0].path), (self.now.follow_all(chosen), self.before.follow_all(had)), self.changed, used
-                )
+                both = self.now.follow_all(chosen), self.before.follow_all(had)
+                one = self._compare_started((paths[0], had[0].path), both, self.changed, used)
                 if one is not None:
                     yield paths, one
 

@@ -19,7 +19,7 @@ from ..launch.follow import MOST_ACTIONS, follow
 from ..launch.result import Launched, LaunchParameter, SettingFile, Started, select_file_values
 from ..launch.text import parse_ros1_value, parse_yaml_value
 from ..package import find_folder_role
-from ..parameter_library import find_terms, list_libraries
+from ..parameter_library import find_terms, list_libraries, list_open
 from ..parameter_values import GivenValue, ParameterTerms, find_broken_limit, fits_type, make_given_value
 from ..workspace import Workspace
 from .bridges import add_bridges
@@ -314,15 +314,16 @@ class _Declared:
     def __init__(self, join: Join, sources: InWorkspace):
         self._join, self._sources = join, sources
         # With who runs them, so that nothing else comes by the same id().
-        self._known: dict[tuple, tuple[Running, dict[str, ParameterTerms]]] = {}
+        self._known: dict[tuple, tuple[Running, dict[str, ParameterTerms], list[tuple[list[str], ParameterTerms]]]] = {}
 
-    def list_terms(self, one: Running) -> dict[str, ParameterTerms]:
-        """The parameters that a program declares, as list_terms() says."""
+    def list_terms(self, one: Running) -> tuple[dict[str, ParameterTerms], list[tuple[list[str], ParameterTerms]]]:
+        """The parameters that a program declares, as list_terms() says, and those of them that stand for several."""
         parts = (None if part is None else frozenset(part) for part in (one.objects, one.others))
         key = id(one.functions), *parts
         if key not in self._known:
-            self._known[key] = one, list_terms(self._join, one, list_libraries(self._sources.workspace))
-        return self._known[key][1]
+            every = list_terms(self._join, one, list_libraries(self._sources.workspace))
+            self._known[key] = one, every, list_open(every)
+        return self._known[key][1:]
 
 
 def _list_refused(
@@ -334,9 +335,9 @@ def _list_refused(
         return
     if not instance.started.settings:
         return
-    every = declared.list_terms(one)
+    every, several = declared.list_terms(one)
     for given in _collect_values(sources, instance.started, instance.name).values() if every else ():
-        terms = find_terms(every, given.name)
+        terms = find_terms(every, given.name, several)
         if terms is not None:
             yield from find_refused(given, terms)
 

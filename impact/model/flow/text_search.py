@@ -19,6 +19,8 @@ from .join import Join
 
 # Names that little else has; what is called `add_*` or `create_*` is asked for by the names in the table alone.
 _STEMS = ("advertise", "create_", "subscribe", "declare_parameter", "add_")
+_FILTER = "Subscriber"
+_BYTES = tuple(stem.encode() for stem in (*_STEMS, _FILTER))
 _ROLES = frozenset(
     ("publisher", "subscriber", "server", "client", "action server", "action client", "parameter", "timer")
 )
@@ -41,10 +43,15 @@ def add_text_coverage(graph: Graph, code: Join, read: Callable[[str], bytes]) ->
     for source in code.code.sources:
         path = source.path
         try:
-            text = read(path).decode("utf-8", "replace")
+            data = read(path)
         except (OSError, KeyError):
             continue
-        hits = list(_search(text, source.facts.language))
+        if not any(stem in data for stem in _BYTES):
+            continue
+        text = data.decode("utf-8", "replace")
+        hits = list(_search(text))
+        if any((path, line) not in known for line, _ in hits):  # it may be a comment
+            hits = list(_search(_blank(text, source.facts.language)))
         own = _list_own(code, functions.get(path, ()), {name for _, name in hits}) if hits else set()
         for line, name in hits:
             if (line, name) in own:
@@ -63,23 +70,35 @@ def add_text_coverage(graph: Graph, code: Join, read: Callable[[str], bytes]) ->
 @cache
 def _compile_search() -> re.Pattern[str]:
     calls = load_frameworks().calls
-    names = {name for name, rows in calls.items() if name.startswith(_STEMS) and any(row.does in _ROLES for row in rows)}
+    making = (name for name, rows in calls.items() if any(row.does in _ROLES for row in rows))
+    names = {name for name in making if name.startswith(_STEMS)}
     listed = "|".join(sorted(map(re.escape, names), key=lambda name: (-len(name), name)))
-    return re.compile(rf"(?<![\w~])({listed})\s*(?:<[^;{{}}()]*>\s*)?\(|\b(Subscriber)\s*<[^;{{}}()]*>\s*\w*\s*[({{]")
+    return re.compile(rf"({listed})\s*(?:<[^;{{}}()]*>\s*)?\(|(Subscriber)\s*<[^;{{}}()]*>\s*\w*\s*[({{]")
 
 
-def _search(text: str, language: str) -> Iterator[tuple[int, str]]:
+def _search(text: str) -> Iterator[tuple[int, str]]:
     """Lines on which a text calls what is named like a framework's function, each with that name."""
-    pattern = _compile_search()
-    if pattern.search(text) is None:
-        return
-    blank = (_CPP if language == "cpp" else _PYTHON).sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
-    for match in pattern.finditer(blank):
-        start = blank.rfind("\n", 0, match.start()) + 1
-        before = blank[start : match.start()]
-        if _MACRO.match(before) or (_DECLARES.search(before) and not _RETURNS.search(before)):
+    pattern, places = _compile_search(), []
+    for stem in (*_STEMS, _FILTER):
+        at = text.find(stem)
+        while at >= 0:
+            places.append(at)
+            at = text.find(stem, at + 1)
+    line, counted = 1, 0
+    for at in sorted(places):
+        if at and (text[at - 1].isalnum() or text[at - 1] in "_~"):
             continue
-        yield blank.count("\n", 0, match.start()) + 1, match[1] or match[2]
+        match = pattern.match(text, at)
+        before = text[text.rfind("\n", 0, at) + 1 : at]
+        if match is None or _MACRO.match(before) or (_DECLARES.search(before) and not _RETURNS.search(before)):
+            continue
+        line, counted = line + text.count("\n", counted, at), at
+        yield line, match[1] or match[2]
+
+
+def _blank(text: str, language: str) -> str:
+    """A text without comments and literals, its lines kept."""
+    return (_CPP if language == "cpp" else _PYTHON).sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
 
 
 def _list_known(code: Join, graph: Graph) -> set[tuple[str, int]]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import ast
 import posixpath
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence, Set
 from functools import cached_property
 from itertools import islice, product
 from operator import itemgetter
@@ -48,7 +49,7 @@ _MOST_KNOWN = 24
 # Calls that give what they are called on, or their first argument, as a string.
 _SAME = frozenset(
     ("c_str", "str", "as_string", "string_value", "value", "get_parameter_value", "strip", "lstrip", "rstrip", "data",
-     "get_value", "to_string", "as_int", "as_bool", "as_double")
+     "get_value", "to_string", "as_int", "as_bool", "as_double", "as_string_array", "string_array_value")
 )  # fmt: skip
 _OF_FIRST = frozenset(("resolveName", "resolve_name", "remap_name", "resolve", "string", "str", "String", "move",
                        "forward", "ParameterValue", "expand_topic_or_service_name", "resolve_topic_name",
@@ -184,7 +185,7 @@ class FlowValues:
         settings: Mapping[str, str] | None = None,
         arguments: tuple[str, ...] | None = None,
         way: Mapping[Fn, FlowCall] | None = None,
-        within: Collection[Fn] | None = None,
+        within: Set[Fn] | None = None,
         node: str = "",
         made: Mapping[Fn, Sequence[Made]] | None = None,
     ):
@@ -223,7 +224,7 @@ class FlowValues:
         """The same where the code is a nodelet of another name."""
         return self.apply_launch(self.settings, self.arguments, node) if self.node else self
 
-    def run(self, functions: Collection[Fn]) -> FlowValues:
+    def run(self, functions: Set[Fn]) -> FlowValues:
         """The same code where only some functions run: what others pass to them does not count."""
         known = self._copies.get(id(functions))
         if known is None:
@@ -342,6 +343,13 @@ class FlowValues:
                 yield joined._replace(text=str(sum(int(one.text or "") for one in row)))
             elif numbers:
                 yield FlowValue(None, "unresolved", "whether numbers are counted is not followed")
+            elif value.text == "%":
+                yield FlowValue(None, "unresolved", "what `%` makes of it is not followed")
+            elif value.text == "/":
+                # Of paths, where one that begins with a `/` stands alone.
+                joined = _join(row)
+                texts = [one.text or "" for one in row]
+                yield joined if joined.text is None else joined._replace(text=posixpath.join(*texts))
             else:
                 yield _join(row)
 
@@ -528,7 +536,23 @@ class FlowValues:
                     for argument in call.arguments[:1]:
                         yield from self._evaluate(argument, fn, call.line, (*seen, variable))
                 return
-        yield FlowValue(None, "unresolved", f"an element of `{value.text or value.kind}`")
+        listed = list(self._list_given_elements(value, fn, line, seen))
+        yield from listed or [FlowValue(None, "unresolved", f"an element of `{value.text or value.kind}`")]
+
+    def _list_given_elements(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
+        """The elements of a list of texts that a launch gives to a parameter; nothing where it may be another list."""
+        if not self.settings or value.kind not in ("name", "call") or len(seen) > _FAR:
+            return
+        found = list(self._evaluate(value, fn, line, (*seen, ("elements", fn, value.text))))
+        given = [one for one in found if one.how == "launch" and one.text is not None]
+        if len(given) != 1 or any(one.beside for one in found):
+            return
+        try:
+            listed = ast.literal_eval(given[0].text or "")
+        except (ValueError, SyntaxError, MemoryError, RecursionError):
+            return
+        if isinstance(listed, list) and all(isinstance(each, str) for each in listed):
+            yield from (given[0]._replace(text=each) for each in listed)
 
     def _evaluate_name(self, path: str, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         parts = split_name(path)
@@ -817,6 +841,7 @@ class FlowValues:
             or (target := self.calls.find_argument(use, use.row.variable)) is None
             or self.origins.may_be_of(target.text, use.fn, origins)
         ]
+
     def _select_given(self, rows: Sequence[tuple[Fn, Assignment]]) -> tuple[Sequence[tuple[Fn, Assignment]], bool]:
         """Of assignments those that may be with the arguments of the command line; where an option that is given sets
         the variable, that alone. And whether one does."""

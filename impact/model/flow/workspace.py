@@ -7,7 +7,6 @@ from functools import cached_property
 
 import msgspec
 
-from ....edges import processes
 from ....edges.memory import cache_in_derived
 from ...facts.extract import ExtractedFacts, extract_all
 from ...facts.flow import FlowFile
@@ -80,15 +79,14 @@ class WorkspaceFlow:
         """What its launch files start, see launches()."""
         from .launches import list_launches
 
-        with processes.run_meanwhile(self._prepare_graph()):
-            return list_launches(self._workspace, lambda: self.code, self.jobs)
+        return list_launches(self._workspace, self._prepare_code, self.jobs)
 
-    def _prepare_graph(self) -> Iterator[None]:
-        """The graph, which most that ask for launches ask for too, made while other processes follow them."""
-        if "code" in self.__dict__:
-            _ = self.graph
-            self._store.close()  # no process that is forked now may go on with a connection of this one
-            yield
+    def _prepare_code(self) -> Join:
+        """Its code, joined, with all that its graph found out, which the processes that are forked then need not find
+        out again. Most that ask for launches ask for the graph too."""
+        _ = self.code, self.graph
+        self._store.close()  # no process that is forked now may go on with a connection of this one
+        return self.code
 
 
 @cache_in_derived

@@ -67,9 +67,11 @@ class Rewrite(NamedTuple):
 class ChangedFiles:
     """What becomes of the entries of parameter files, by the id() of the entries that it is made from: the same in all
     launches of the same sources. rewritten: those entries and what a rewrite makes of them; filled: those entries, the
-    places of those that hold a substitution, and all of them by what those are filled in as."""
+    places of those that hold a substitution, and all of them by what those are filled in as; texts: those entries, and
+    the places of them by the keys and texts that stand in them."""
 
     def __init__(self) -> None:
+        self.texts: dict[int, tuple[tuple[ParameterEntry, ...], dict[str, list[int]]]] = {}
         self.rewritten: dict[tuple[int, Rewrite], tuple[tuple[ParameterEntry, ...], tuple[ParameterEntry, ...]]] = {}
         self.filled: dict[int, tuple[tuple[ParameterEntry, ...], list[int], dict[str, tuple[ParameterEntry, ...]]]] = {}
 
@@ -95,7 +97,7 @@ class Filling:
         """Entries whose keys or values may hold substitutions, filled in where that can be done."""
         known = self.changed.filled.get(id(entries))
         if known is None:
-            places = [at for at, entry in enumerate(entries) if "$(" in f"{entry.path}{entry.value}"]
+            places = [at for at, entry in enumerate(entries) if _holds_substitution(entry)]
             known = self.changed.filled[id(entries)] = entries, places, {"[]": entries}
         _, places, made = known
         filled = [self._substitute_entry(entries[at]) for at in places]
@@ -150,8 +152,22 @@ class Filling:
         key = id(entries), rewrite
         known = self.changed.rewritten.get(key)
         if known is None:
-            known = self.changed.rewritten[key] = entries, _rewrite_entries(entries, rewrite)
+            made = self._replace_texts(entries, rewrite) if rewrite.is_text else _rewrite_entries(entries, rewrite)
+            known = self.changed.rewritten[key] = entries, made
         return known[1]
+
+    def _replace_texts(self, entries: tuple[ParameterEntry, ...], rewrite: Rewrite) -> tuple[ParameterEntry, ...]:
+        """Entries as ReplaceString of nav2_common would leave them."""
+        known = self.changed.texts.get(id(entries))
+        if known is None:
+            known = self.changed.texts[id(entries)] = entries, _index_texts(entries)
+        change = _make_change(rewrite.changes)
+        # A key that is empty is left out.
+        changed = (places for text, places in known[1].items() if not text or change(text) != text)
+        made = list(entries)
+        for at in {at for places in changed for at in places}:
+            made[at] = _replace_in_entry(entries[at], change)
+        return tuple(made)
 
     def split_share_path(self, path: str) -> tuple[str, str] | None:
         """Package and path in it of a file below a package's share folder."""
@@ -362,20 +378,39 @@ _PARTS = {"executable": 2, "equals": 2, "in": 1, "choose": 3, "method": 1, "rewr
 
 
 def _rewrite_entries(entries: Sequence[ParameterEntry], rewrite: Rewrite) -> tuple[ParameterEntry, ...]:
-    """Entries as RewrittenYaml or ReplaceString of nav2_common would leave them."""
-    if rewrite.is_text:
-        change = _make_change(rewrite.changes)
-        return tuple(_replace_in_entry(entry, change) for entry in entries)
+    """Entries as RewrittenYaml of nav2_common would leave them."""
     changes = {old.value: new for old, new in rewrite.changes if old.value is not None}
     root = (rewrite.root.value,) if rewrite.root.value else ()
     made: list[ParameterEntry] = []
     for entry in entries:
         new = changes.get(".".join(entry.path), changes.get(entry.path[-1] if entry.path else ""))
+        if new is None and not root:
+            made.append(entry)
+            continue
         value = entry.value
         if new is not None:
             value = parse_scalar(new.value) if new.value else new.shown
         made.append(ParameterEntry((*root, *entry.path), value, entry.line))
     return tuple(made)
+
+
+def _holds_substitution(entry: ParameterEntry) -> bool:
+    """Whether a key or the value of an entry may hold a substitution."""
+    value = entry.value
+    written = value if isinstance(value, str) else str(value) if isinstance(value, (list, dict)) else ""
+    return "$(" in written or any("$(" in part for part in entry.path)
+
+
+def _index_texts(entries: Sequence[ParameterEntry]) -> dict[str, list[int]]:
+    """The places of entries by the keys and texts that stand in them."""
+    found: dict[str, list[int]] = {}
+    for at, entry in enumerate(entries):
+        value = entry.value
+        texts = value if isinstance(value, list) else (value,)
+        for text in (*entry.path, *texts):
+            if isinstance(text, str):
+                found.setdefault(text, []).append(at)
+    return found
 
 
 def _make_change(changes: tuple[tuple[LaunchText, LaunchText], ...]) -> Callable[[str], str]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping
 from functools import lru_cache
+from itertools import chain
+from operator import itemgetter
 from typing import NamedTuple, Protocol
 
 from ...facts.launch.actions import LaunchFile
@@ -153,23 +155,40 @@ class Launched(NamedTuple):
 def select_file_values(setting: SettingFile, full_name: str) -> dict[str, ParameterEntry]:
     """The entries of a ROS 2 parameter file that hold for a node, later ones over earlier ones. full_name: empty for a
     node whose name is not known: then only what is for every node."""
+    if setting.plain:
+        return {".".join(entry.path): entry for entry in setting.entries or ()}
+    groups = _split_by_node(setting.entries) if setting.entries else {}
+    meant = [rows for keys, rows in groups.items() if _names_node(keys, full_name)]
     found: dict[str, ParameterEntry] = {}
-    meant: dict[tuple[str, ...], bool] = {}
-    for entry in setting.entries or ():
+    for _, name, entry in meant[0] if len(meant) == 1 else sorted(chain(*meant), key=itemgetter(0)):
+        found.pop(name, None)
+        found[name] = entry
+    return found
+
+
+_Rows = list[tuple[int, str, ParameterEntry]]
+"""Entries with their places and the names of their parameters."""
+_SPLIT: dict[int, tuple[tuple[ParameterEntry, ...], dict[tuple[str, ...], _Rows]]] = {}
+_MOST_SPLIT = 64
+
+
+def _split_by_node(entries: tuple[ParameterEntry, ...]) -> dict[tuple[str, ...], _Rows]:
+    """The entries of a parameter file by the keys above `ros__parameters`. Those of the last files are kept, since many
+    nodes are given one file."""
+    known = _SPLIT.get(id(entries))
+    if known is not None:
+        return known[1]
+    found: dict[tuple[str, ...], _Rows] = {}
+    for place, entry in enumerate(entries):
         path = entry.path
-        if setting.plain:
-            found[".".join(path)] = entry
-            continue
-        if "ros__parameters" not in path:
-            continue
-        split = path.index("ros__parameters")
-        keys = path[:split]
-        if keys not in meant:
-            meant[keys] = _names_node(keys, full_name)
-        name = ".".join(path[split + 1 :]) if meant[keys] else ""
-        if name:
-            found.pop(name, None)
-            found[name] = entry
+        if "ros__parameters" in path:
+            split = path.index("ros__parameters")
+            name = ".".join(path[split + 1 :])
+            if name:
+                found.setdefault(path[:split], []).append((place, name, entry))
+    if len(_SPLIT) >= _MOST_SPLIT:
+        _SPLIT.clear()
+    _SPLIT[id(entries)] = entries, found  # which keeps the entries, so that nothing else comes by the same id
     return found
 
 

@@ -1,6 +1,6 @@
 """The message-flow graph as text: each topic, service and action with who uses it, and what could not be resolved."""
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from operator import itemgetter
 
 from ....edges.console import format_count
@@ -43,12 +43,28 @@ def render(selection: Selection, base: Graph | None, everything: bool = False, s
         if which:
             said = f"{format_count(len(which), 'node')} {what}: {', '.join(sorted(which))}"
             lines += [*lay_out([LinePart(said)], style, 0, 2), ""]
+    lines += _render_uncertain(graph, names, everything, style)
     near = graph.coverage.unresolved
     if selection.asked and not everything:
         paths = {each.path for each in (*graph.endpoints, *graph.publishes)}
         near = tuple(one for one in near if one.path in paths)
     lines += render_coverage(graph.coverage, near, everything, style)
     return "\n".join(lines) + "\n"
+
+
+def _render_uncertain(graph: Graph, names: Mapping[str, str], everything: bool, style: Style) -> Iterator[str]:
+    """The nodes that may not be started, or may have another name, with the reasons."""
+    why = {names[node.id]: "; ".join(node.uncertain) for node in graph.nodes if node.uncertain and node.id in names}
+    if not why:
+        return
+    said = f"{format_count(len(why), 'node')} that may not be started, or may have another name:"
+    yield from lay_out([LinePart(said)], style, 0, 2)
+    shown = sorted(why.items())
+    for name, reasons in shown if everything else shown[:_SHOWN]:
+        yield from lay_out([LinePart(f"{name}: {reasons}")], style, 2, 4)
+    if not everything and len(shown) > _SHOWN:
+        yield from lay_out([LinePart(f"and {len(shown) - _SHOWN:,} more; --all lists them")], style, 2, _HANG)
+    yield ""
 
 
 def _render_head(found: Sequence[Edge], graph: Graph, hidden: int, style: Style) -> Iterator[str]:
@@ -216,13 +232,15 @@ def render_coverage(
             yield from lay_out([LinePart(f"{len(paths)} {what}: {', '.join(shown)}{rest}")], style, 0, 2)
     if coverage.missed:
         found = sum(one.found for one in coverage.by_text)
-        said = f"{len(coverage.missed):,} of {format_count(found, 'call')} that a search of the text finds not understood:"
+        calls = format_count(found, "call")
+        said = f"{len(coverage.missed):,} of {calls} that a search of the text finds not understood:"
         yield from lay_out([LinePart(said)], style, 0, 2)
         for one in coverage.missed if everything else coverage.missed[:_SEARCHED]:
             pieces = [LinePart("", path=f"{one.path}:{one.line}:"), LinePart(f"`{one.written}`")]
             yield from lay_out(pieces, style, 2, 4)
         if not everything and len(coverage.missed) > _SEARCHED:
-            yield from lay_out([LinePart(f"and {len(coverage.missed) - _SEARCHED:,} more; --all lists them")], style, 2, _HANG)
+            said = f"and {len(coverage.missed) - _SEARCHED:,} more; --all lists them"
+            yield from lay_out([LinePart(said)], style, 2, _HANG)
         worst = [one for one in coverage.by_text if one.found >= 4 and 2 * one.understood < one.found]
         for one in worst:
             said = f"of package `{one.package}` alone {one.understood} of {one.found}"

@@ -164,7 +164,7 @@ class Workshop:
                 at.parent.mkdir(parents=True, exist_ok=True)
                 write_scratch_file(at, text.encode())
 
-    def _provide_headers(self, unit: SourceUnit, path: Path) -> None:
+    def _make_headers(self, unit: SourceUnit, path: Path) -> None:
         """Makes the headers of messages and facades that a unit and the workspace's headers include, as far as their
         text tells."""
         facades = list_folders(self.definitions.ros)
@@ -215,10 +215,10 @@ class Workshop:
         """Whether a header is not there, or is one of ROS that is installed and stands in the way of ours."""
         key = path, unit.boost
         if key not in self._wanted:
-            self._wanted[key] = self._looks_wanted(path, unit)
+            self._wanted[key] = self._decide_wanted(path, unit)
         return self._wanted[key]
 
-    def _looks_wanted(self, path: str, unit: SourceUnit) -> bool:
+    def _decide_wanted(self, path: str, unit: SourceUnit) -> bool:
         if not path.startswith("/"):
             return True
         at = next((Path(path).relative_to(one) for one in _SYSTEM if path.startswith(one + "/")), None)
@@ -294,7 +294,7 @@ class Workshop:
         unit.cuts = SourceCuts(self.root, folder)
         self._cuts = unit.cuts
         self._store(unit, path)
-        self._provide_headers(unit, path)
+        self._make_headers(unit, path)
         first: CompileError | None = None
         is_searched = False
         for _ in range(_ROUNDS_OF_STUBS):

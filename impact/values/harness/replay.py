@@ -72,7 +72,9 @@ def is_confirmed(witness: Witness, replayed: Replayed) -> bool:
     if witness.result is not Reaction.CRASH:
         return True
     same_kind = witness.crash is replayed.crash
-    return same_kind and witness.place.line == replayed.place.line and _is_same_file(witness.place, replayed.place)
+    # A loop without an end is stopped on any of its lines.
+    same_line = witness.place.line == replayed.place.line or witness.crash is CrashKind.ENDLESS
+    return same_kind and same_line and _is_same_file(witness.place, replayed.place)
 
 
 def _is_same_file(one: CodeLine, other: CodeLine) -> bool:
@@ -154,7 +156,7 @@ def _read_results(out: Path, root: Path, program: Path) -> dict[int, Replayed]:
             case, number = _Case(), int(rest[0])
         elif word == "status":
             case.status = int(rest[0])
-            found[number] = _judge(case, complete_frames(_read_errors(out, number), program), root)
+            found[number] = _judge(case, fill_frames(_read_errors(out, number), program), root)
         else:
             _note(case, word, rest)
     return found
@@ -270,7 +272,7 @@ def _classify_address(kind: str, errors: str) -> CrashKind:
     return _ADDRESSES.get(kind, CrashKind.INDEX)
 
 
-def complete_frames(errors: str, program: Path) -> str:
+def fill_frames(errors: str, program: Path) -> str:
     """A stack trace with the lines of those calls in a program that the sanitizer's own reader has no line of: it loses
     some at the ends of functions."""
     bare = [found for found in _BARE_FRAME.finditer(errors) if found["module"] == str(program)][:_MOST_FRAMES]

@@ -54,11 +54,12 @@ Model = Mapping[str, int]
 
 
 class Solving:
-    """The variables of one exploration, and answers about conjunctions of conditions over them."""
+    """The variables of one exploration, and answers about conjunctions of conditions over them. inputs: the variables
+    where somebody else keeps them."""
 
-    def __init__(self, deadline: float):
+    def __init__(self, deadline: float, inputs: dict[str, SymbolicInput] | None = None):
         self.deadline = deadline
-        self.inputs: dict[str, SymbolicInput] = {}
+        self.inputs: dict[str, SymbolicInput] = inputs if inputs is not None else {}
         # Variables that are no inputs, and what each stands for.
         self.assumed: dict[str, str] = {}
         self.derived: dict[str, UnknownFunction] = {}
@@ -181,27 +182,37 @@ class Solving:
         return None if answer is None else dict(answer)
 
     def _find_answer(self, conditions: Sequence[z3.BoolRef], model: Model) -> Model | SolverTimeout | None:
+        is_slow = any(self.find_traits(each).is_slow for each in conditions)
+        if is_slow and self.is_impossible(conditions):
+            return None
+        found = self.guess(conditions, model)
+        if found is not None:
+            return found
+        names = frozenset().union(*(self.find_traits(each).names for each in conditions))
+        return self._solve(conditions, names, _SLOW_EFFORT if is_slow else _EFFORT)
+
+    def is_impossible(self, conditions: Sequence[z3.BoolRef]) -> bool:
+        """Whether the bounds of floats alone exclude one of some conditions."""
+        ranges = Ranges(self.inputs, narrow_floats(conditions))
+        return any(ranges.is_impossible(each) for each in conditions)
+
+    def guess(self, conditions: Sequence[z3.BoolRef], model: Model) -> dict[str, int] | None:
+        """Values that fulfil some conditions without the solver, where these calculate with floats or multiply; None
+        where none are guessed. model: from which guesses begin. The newest condition is the last."""
         traits = [self.find_traits(each) for each in conditions]
         names = frozenset().union(*(each.names for each in traits))
         constants = frozenset().union(*(each.constants for each in traits))
         is_slow = any(each.is_slow for each in traits)
         is_derived = any(name in self.derived for name in names)
-        if is_slow:
-            ranges = Ranges(self.inputs, narrow_floats(conditions))
-            if any(ranges.is_impossible(each) for each in conditions):
-                return None
         if is_slow or is_derived:
             found = self.guessing.guess_floats(conditions, names, constants, model, 60, self.deadline)
             if found is None and is_slow:
                 found = self.guessing.search_line(conditions, names, constants, model, self.deadline)
             if found is not None:
                 return found
-        has_products = any(each.has_products for each in traits)
-        if has_products:
-            found = self.guessing.guess_texts(conditions, names, model, self.deadline)
-            if found is not None:
-                return found
-        return self._solve(conditions, names, _SLOW_EFFORT if is_slow else _EFFORT)
+        if any(each.has_products for each in traits):
+            return self.guessing.guess_texts(conditions, names, model, self.deadline)
+        return None
 
     def _solve(
         self, conditions: Sequence[z3.BoolRef], names: frozenset[str], effort: int

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import z3
 
+from ..ir.solving import Solving
 from ..outcomes import Bounds, CallbackPath, CrashKind, Exploration, Reaction
 from .habits import describe_class, list_called_by, list_read_attributes, list_read_names, list_set_globals
 from .library import make_like
@@ -43,10 +44,11 @@ def explore_callback(
     found = Exploration(bounds=bounds)
     pending: list[list[bool]] = [[]]
     prepared: list[bool | None] = []
+    solving = Solving(deadline, found.inputs)
     while pending:
         if time.monotonic() > deadline or len(found.paths) >= bounds.paths:
             break
-        run = PythonRun(pending.pop(), bounds, found.inputs, deadline, prepared)
+        run = PythonRun(pending.pop(), bounds, found.inputs, deadline, prepared, solving)
         path = _take_way(callback, run, messages, find_module)
         found.instructions += run.steps
         pending.extend(run.open_ways)
@@ -242,6 +244,8 @@ def _make_state(machine: PythonMachine, path: str, value: Any) -> Any:
         return value
     if isinstance(value, ArrayValue):
         return ArrayValue(path, value.shape)
+    if isinstance(value, dict):
+        return ArrayValue(path)  # whatever it holds, elements can be set
     return Opaque(path)
 
 

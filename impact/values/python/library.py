@@ -132,12 +132,20 @@ def find_message_type(name: str) -> str:
 # What a program calls.
 
 
+def _is_exception(name: str) -> bool:
+    found = getattr(builtins, name, None)
+    return isinstance(found, type) and issubclass(found, BaseException)
+
+
 def call_outside(machine: Machine, name: str, given: list[Any], named: dict[str, Any]) -> Any:
     """Calls something of a module that is not in the workspace."""
     run = machine.run
     built_in = _BUILT_INS.get(name.removeprefix("builtins.")) if name.startswith("builtins.") else None
     if built_in is not None:
         return built_in(machine, given, named)
+    if name.startswith("builtins.") and _is_exception(name.removeprefix("builtins.")):
+        text = given[0] if given and isinstance(given[0], str) else ""
+        return run.throw(name.removeprefix("builtins."), text)
     if name.startswith(("math.", "numpy.", "np.")):
         word = name.partition(".")[2]
         function = _MATH.get(word) if name.startswith("math.") or word in _SAME_IN_NUMPY else None

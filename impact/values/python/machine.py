@@ -31,6 +31,7 @@ from .modules import (
 from .run import PythonRun, PythonThrownError
 from .terms import (
     ArrayValue,
+    BoundReachedError,
     ListValue,
     NotModelledError,
     Opaque,
@@ -96,6 +97,11 @@ class PythonMachine:
         except (_BreakSignal, _ContinueSignal, _ReturnSignal):
             pass
 
+    def _may_leave_out(self, error: NotModelledError) -> bool:
+        """Whether what cannot be executed is left out and the rest is: while a node is made, unless a bound is
+        reached."""
+        return self.run.is_preparing and not isinstance(error, BoundReachedError)
+
     def _forget(self, statement: ast.stmt, scope: Scope) -> None:
         """Names and members that a statement sets are of things that nothing is known of, but for their kind where
         they were set before."""
@@ -109,9 +115,9 @@ class PythonMachine:
             except (NotModelledError, PythonThrownError):
                 continue
             if isinstance(owner, PythonObject):
-                self._loosen(owner, node.attr)
+                self._widen(owner, node.attr)
 
-    def _loosen(self, owner: PythonObject, name: str) -> None:
+    def _widen(self, owner: PythonObject, name: str) -> None:
         """Lets a member be any value of its kind; what ROS or the workspace made is kept."""
         path = f"this.{name}"
         value = owner.members.get(name, _MISSING)
@@ -196,8 +202,8 @@ class PythonMachine:
         for statement in body:
             try:
                 self.execute(statement, scope)
-            except NotModelledError:
-                if not self.run.is_preparing:
+            except NotModelledError as error:
+                if not self._may_leave_out(error):
                     raise
                 self._forget(statement, scope)
                 if isinstance(statement, ast.Return):
@@ -242,8 +248,8 @@ class PythonMachine:
     def _execute_if(self, node: ast.If, scope: Scope) -> None:
         try:
             is_chosen = self.is_true(self.evaluate(node.test, scope))
-        except NotModelledError:
-            if not self.run.is_preparing:
+        except NotModelledError as error:
+            if not self._may_leave_out(error):
                 raise
             self._execute_either(node, scope)
             return
@@ -583,8 +589,8 @@ class PythonMachine:
             if step is None:
                 raise NotModelledError(f"expression {type(node).__name__}")
             return step(node, scope)
-        except NotModelledError:
-            if not self.run.is_preparing:
+        except NotModelledError as error:
+            if not self._may_leave_out(error):
                 raise
             return Opaque(_spell(node) or "something")
 

@@ -9,12 +9,13 @@ from typing import Any
 
 import z3
 
-from ..ir.terms import pack_float
+from ..ir.solving import Solving
 from ..outcomes import NOWHERE, Bounds, CodeLine, InputKind, Observable, Sent, SymbolicInput
 from .terms import (
     FLOAT32,
     FLOAT64,
     NEAREST,
+    BoundReachedError,
     ListValue,
     NotModelledError,
     Real,
@@ -80,11 +81,12 @@ class ProgramRounds:
 class PythonRun:
     """A way that begins with some decisions and goes on by itself. inputs: those of all ways, by path; open_ways: the
     decisions of ways that branch off this one. prepared: what conditions are while a node is made, None where both can
-    be: the same on all ways, and filled by the first."""
+    be: the same on all ways, and filled by the first. solving: guesses values where the solver gives up; one for all
+    ways."""
 
     def __init__(
         self, decisions: Sequence[bool], bounds: Bounds, inputs: dict[str, SymbolicInput], deadline: float,
-        prepared: list[bool | None] | None = None,
+        prepared: list[bool | None] | None = None, solving: Solving | None = None,
     ):  # fmt: skip
         self._decisions, self._taken = decisions, 0
         self.bounds, self.inputs, self.deadline = bounds, inputs, deadline
@@ -103,6 +105,7 @@ class PythonRun:
         self.place = NOWHERE
         self.steps = 0
         self._fresh: dict[str, int] = {}
+        self._solving = solving if solving is not None else Solving(deadline, inputs)
         self._prepared = prepared if prepared is not None else []
         self._asked = 0
         self.is_preparing = False
@@ -188,25 +191,38 @@ class PythonRun:
         answer = self._solver.check(term)
         self._found = self._solver.model() if answer == z3.sat else None
         if answer == z3.unknown:
-            self._found = guess_model([*self.condition, term])
+            if self._solving.is_impossible([*self.condition, term]):
+                return False
+            self._found = self._guess([*self.condition, term])
             if self._found is None:
                 self.assumed[GAVE_UP] = None
         return answer != z3.unsat
+
+    def _guess(self, condition: Sequence[z3.BoolRef]) -> z3.ModelRef | None:
+        """A model that is guessed, and checked by calculating; None where none is found."""
+        values = self._solving.guess(condition, {})
+        if values is None:
+            return None
+        solver = z3.Solver()
+        solver.add(*[self.inputs[name].term == value for name, value in values.items()])
+        return solver.model() if solver.check() == z3.sat else None
 
     def is_possible(self) -> bool | None:
         """Whether some input takes this way; None where the solver does not know."""
         answer = self._solver.check()
         if answer == z3.unknown:
-            return True if guess_model(self.condition) is not None else None
+            if self._solving.is_impossible(self.condition):
+                return False
+            return True if self._guess(self.condition) is not None else None
         return answer == z3.sat
 
     def count_step(self) -> None:
         """Raises NotModelledError where the bounds are reached."""
         self.steps += 1
         if self.steps > (_STEPS_OF_PREPARATION if self.is_preparing else _STEPS):
-            raise NotModelledError("too many steps")
+            raise BoundReachedError("too many steps")
         if not self.steps & 63 and time.monotonic() > self.deadline:
-            raise NotModelledError("the time limit")
+            raise BoundReachedError("the time limit")
 
     def throw(self, name: str, detail: str = "") -> PythonThrownError:
         """The exception of Python of a name at the present place, to be raised."""
@@ -309,43 +325,3 @@ class PythonRun:
     def note_effect(self, kind: str, name: str) -> None:
         """Something that others can observe."""
         self.effects.append(Observable(kind, name, self.place))
-
-
-def guess_model(condition: Sequence[z3.BoolRef]) -> z3.ModelRef | None:
-    """An assignment of simple values to the floats of a condition that a solver then completes; None where none of a
-    few fits. Products and quotients of floats are hard for a solver, and easy once most of them are numbers."""
-    terms: dict[str, z3.ExprRef] = {}
-    for term in condition:
-        for one in list_variables(term):
-            terms[one.decl().name()] = one
-    wide = [one for one in terms.values() if z3.is_bv(one) and one.size() in (32, 64)]
-    solver = z3.Solver()
-    solver.set("timeout", 200)
-    solver.add(*condition)
-    for numbers in _GUESSES:
-        for at in range(len(numbers)):
-            given = [one == _encode(numbers[(index + at) % len(numbers)], one.size()) for index, one in enumerate(wide)]
-            if solver.check(*given) == z3.sat:
-                return solver.model()
-    return None
-
-
-_GUESSES = ((0.0,), (1.0,), (1.0, 0.0), (0.5, 2.0), (-1.0,), (-1.0, 1.0, 10.0), (float("nan"),))
-
-
-def _encode(number: float, bits: int) -> z3.BitVecRef:
-    return z3.BitVecVal(pack_float(number, bits), bits)
-
-
-def list_variables(term: z3.ExprRef) -> list[z3.ExprRef]:
-    """The inputs that a term speaks of."""
-    found: dict[str, z3.ExprRef] = {}
-    stack, seen = [term], set()
-    while stack:
-        one = stack.pop()
-        if one.get_id() not in seen:
-            seen.add(one.get_id())
-            if z3.is_const(one) and one.decl().kind() == z3.Z3_OP_UNINTERPRETED:
-                found[one.decl().name()] = one
-            stack.extend(one.children())
-    return list(found.values())

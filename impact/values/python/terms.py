@@ -23,6 +23,10 @@ class NotModelledError(Exception):
     """The executor cannot go on: what follows is unknown. Its text says why."""
 
 
+class BoundReachedError(NotModelledError):
+    """A bound on steps or time: nothing further is executed."""
+
+
 @dataclass(frozen=True, slots=True)
 class Whole:
     """An int. term: a signed bit vector that is wide enough; low and high: between which it is."""
@@ -93,8 +97,8 @@ class Opaque:
 
 @dataclass(slots=True)
 class ArrayValue(Opaque):
-    """An array of numpy, whose numbers are not known. shape: None where it is not known either. changes: how often
-    elements were set."""
+    """An array of numpy, or a dictionary, whose elements are not known. shape: None where it is not known either.
+    changes: how often elements were set."""
 
     shape: tuple[int, ...] | None = None
     changes: int = 0

@@ -41,7 +41,10 @@ double ri_float64(const char *name) noexcept { double v; klee_make_symbolic(&v, 
 float ri_float32(const char *name) noexcept { float v; klee_make_symbolic(&v, sizeof v, ri_name(name)); return v; }
 uint64_t ri_size(const char *name, uint64_t most) noexcept {
   char whole[680]; strcpy(whole, ri_name(name)); strcat(whole, ".size");
-  uint64_t v; klee_make_symbolic(&v, sizeof v, whole); klee_assume(v <= most); return v;
+  uint64_t v; klee_make_symbolic(&v, sizeof v, whole); klee_assume(v <= most);
+  // A way for each size: KLEE ends ways on which memory of a symbolic size is asked for.
+  for (uint64_t one = 0; one < most; ++one) if (v == one) return one;
+  return most;
 }
 void ri_characters(const char *name, char *buffer, uint64_t most) noexcept { klee_make_symbolic(buffer, most + 1, ri_name(name)); klee_assume(buffer[most] == 0); }
 void ri_effect(const char *, const char *) noexcept { ++ri_effects; }

@@ -1,0 +1,79 @@
+"""What a search of the text finds of calls that nothing understood."""
+
+import pytest
+from joining import graph_on_disk, manifest
+
+NODE = """
+    #include <rclcpp/rclcpp.hpp>
+    class Ship : public rclcpp::Node {
+     public:
+      Ship() : Node("ship") {
+        HERE
+      }
+      template <class T> void create_publisher_of(const std::string & name) { create_publisher<T>(name, 1); }
+      void advertise(int) {}
+    };
+    int main(int c, char** v) { rclcpp::init(c, v); rclcpp::spin(std::make_shared<Ship>()); }
+"""
+CASES = [
+    ('create_publisher<std_msgs::msg::Empty>("a", 1);', []),
+    ('create_publisher<std_msgs::msg::Empty>(find(), 1);', []),  # that is not resolved, and told beside it
+    ('declare_parameter("a", 1);', []),
+    ('// thing.advertise("a");', []),
+    ('auto text = "thing.advertise(a)";', []),
+    ("advertise(3);", []),  # a function of its own
+    ("#define X thing.advertise(3)", []),
+    ('thing.advertise("a");', ["advertise"]),
+    ('auto p = Factory::create_publisher<std_msgs::msg::Empty>(thing, "a");', ["create_publisher"]),
+    ('return thing.advertise("a");', ["advertise"]),
+]
+
+
+def make_files(written: str) -> dict[str, str]:
+    cmake = "project(ship)\nadd_executable(ship src/ship.cpp)\nament_package()\n"
+    return {
+        "ship/package.xml": manifest("ship", "ament_cmake"),
+        "ship/CMakeLists.txt": cmake,
+        "ship/src/ship.cpp": NODE.replace("HERE", written),
+    }
+
+
+@pytest.mark.parametrize(("written", "missed"), CASES)
+def test_cpp(tmp_path, written, missed):
+    coverage = graph_on_disk(tmp_path, make_files(written)).coverage
+    found = [(one.written, one.path, one.line) for one in coverage.missed]
+    assert found == [(name, "ship/src/ship.cpp", 5) for name in missed]
+
+
+def test_python_and_counts(tmp_path):
+    python = '''
+        import rclpy
+        from rclpy.node import Node
+
+        class Ship(Node):
+            """create_publisher(None, "a", 1)"""
+
+            def create_timer(self, period):
+                pass
+
+            def fill(self):
+                self.create_timer(3)
+                self.create_publisher(None, "a", 1)
+                thing.create_subscription(None, "b", 1)  # thing.create_client()
+    '''
+    files = {**make_files('thing.advertise("a");'), "boat/package.xml": manifest("boat", "ament_python")}
+    coverage = graph_on_disk(tmp_path, {**files, "boat/boat/ship.py": python}).coverage
+    counts = {one.package: (one.found, one.understood) for one in coverage.by_text}
+    assert counts["boat"][0] - counts["boat"][1] == len([one for one in coverage.missed if one.path.startswith("boat")])
+    assert counts["ship"] == (2, 1)
+
+
+def test_services_of_the_interfaces_of_a_node(tmp_path):
+    written = """
+        rclcpp::create_client<std_srvs::srv::Trigger>(base, graph, services, "ask", qos, group);
+        rclcpp::create_service<std_srvs::srv::Trigger>(base, services, "serve", [](int) {}, qos, group);
+    """
+    found = graph_on_disk(tmp_path, make_files(written))
+    services = {(one.role, one.topic) for one in found.endpoints if one.role != "publisher"}
+    assert services == {("client", "/ask"), ("server", "/serve")}
+    assert not found.coverage.missed
