@@ -7,6 +7,7 @@ adds, of messages within texts of 8 bytes and arrays of 3 elements and of any st
     ignores  whether some message leads to nothing at all; logs: to a line in a log and nothing else
     crashes  what some message leads to: kind (as rosimpact names it) and line
     opaque   true where it cannot be said without code that is not in the workspace; then the others are left out
+    beyond   true where something follows only from arrays that are longer
 What the tool says is computed when it is scored, on a checkout of the commit, and written beside it (NAME.said.jsonl).
 A crash that the reader has not got is judged by hand afterwards: `true` in NAME.verdicts.jsonl (repo, path, line, kind)
 
