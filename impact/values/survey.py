@@ -10,6 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
+from ...edges.console import describe_unforeseen
 from ...edges.processes import Died, run_forked
 from ..facts.interface import Section
 from ..facts.python import source
@@ -444,11 +445,14 @@ def _refuse(callback: CppCallback) -> str:
 
 def _explore_target(
     targets: Sequence[_Target], messages: Messages, modules: Mapping[str, ModuleCode], number: int
-) -> Evaluated:
-    """What one callback does; runs in a process of its own."""
+) -> Evaluated | Died:
+    """What one callback does; runs in a process of its own. What is unforeseen costs this callback alone."""
     target = targets[number]
-    found = _explore(target, messages, modules)
-    evaluated = evaluate(found, target.names, parameters=target.parameters)
+    try:
+        found = _explore(target, messages, modules)
+        evaluated = evaluate(found, target.names, parameters=target.parameters)
+    except Exception as error:
+        return Died(describe_unforeseen(error))
     return evaluated if target.prepared is not None else evaluated._replace(asked=tuple(sorted(messages.asked)))
 
 
@@ -467,9 +471,18 @@ def _explore(target: _Target, messages: Messages, modules: Mapping[str, ModuleCo
 def _judge_target(
     requests: Sequence[Request], targets: Mapping[CallbackKey, _Target], messages: Messages,
     modules: Mapping[str, ModuleCode], number: int,
-) -> Judged:  # fmt: skip
-    """What one callback does with messages; runs in a process of its own."""
-    request = requests[number]
+) -> Judged | Died:  # fmt: skip
+    """What one callback does with messages; runs in a process of its own. What is unforeseen costs this callback
+    alone."""
+    try:
+        return _judge_request(requests[number], targets, messages, modules)
+    except Exception as error:
+        return Died(describe_unforeseen(error))
+
+
+def _judge_request(
+    request: Request, targets: Mapping[CallbackKey, _Target], messages: Messages, modules: Mapping[str, ModuleCode]
+) -> Judged:
     target = targets[request.key]
     found = _explore(target, messages, modules)
     outcomes = tuple(judge_message(found, one) for one in request.messages)
@@ -560,7 +573,7 @@ def _name_module(path: str, packages: Collection[str]) -> str:
     """The dotted name of a file: from the outermost folder with an __init__.py on."""
     folder, _, name = path.rpartition("/")
     parts = [] if name == "__init__.py" else [name.removesuffix(".py")]
-    while folder in packages:
+    while folder and folder in packages:
         folder, _, last = folder.rpartition("/")
         parts.insert(0, last)
     return ".".join(parts)

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from ir_programs import needs_clang
 from rosimpact.impact.cli.app import app
+from rosimpact.impact.values import survey
 from typer.testing import CliRunner
 
 LAMP = Path(__file__).parents[2] / "examples" / "lamp"
@@ -94,3 +95,27 @@ def test_without_clang_python_is_explored_all_the_same(monkeypatch):
     status, out, _ = run(str(LAMP), "--no-publishers")
     assert status == 0 and "install clang" in out.replace("apt install", "install")
     assert "2 callbacks, 1 explored to a verdict" in out
+
+
+def test_a_workspace_whose_own_folder_is_a_python_package(tmp_path):
+    shutil.copytree(LAMP, tmp_path / "ws")
+    (tmp_path / "ws/src/lamp/src/lamp_node.cpp").unlink()
+    for folder in ("", "src/", "src/lamp/", "src/lamp/scripts/"):
+        (tmp_path / f"ws/{folder}__init__.py").touch()
+    status, out, err = run(str(tmp_path / "ws"), "--format", "json")
+    assert status == 0, err
+    assert [(one["callback"], one["reason"]) for one in json.loads(out)["callbacks"]] == [("Sender.on_state", "")]
+
+
+def test_a_fault_of_the_explorer_costs_one_callback(tmp_path, monkeypatch):
+    shutil.copytree(LAMP, tmp_path / "ws")
+    (tmp_path / "ws/src/lamp/src/lamp_node.cpp").unlink()
+
+    def fail(*_: object, **__: object):
+        raise AttributeError("made for this test")
+
+    monkeypatch.setattr(survey, "evaluate", fail)
+    status, out, err = run(str(tmp_path / "ws"), "--format", "json")
+    assert status == 0, err
+    (sender,) = json.loads(out)["callbacks"]
+    assert "made for this test" in sender["reason"] and "fault of rosimpact" in sender["reason"]

@@ -155,13 +155,16 @@ def end_sent(call: Call) -> Any:
 
 def _add_sent(state: State, path: str, value: Any, kind: tuple[InputKind, int, bool]):
     sending = state.sending
-    if sending is not None and value is not UNDEFINED:
+    # An address is no value of a field: raw bytes that somebody copied.
+    if sending is not None and (isinstance(value, int) or is_term(value)):
         state.sending = sending._replace(values={**sending.values, path: value}, kinds={**sending.kinds, path: kind})
 
 
 def _cut(value: Any, bits: int) -> Any:
-    if value is UNDEFINED or not is_term(value):
-        return value if value is UNDEFINED else value & ((1 << bits) - 1)
+    if isinstance(value, int):
+        return value & ((1 << bits) - 1)
+    if not is_term(value):
+        return UNDEFINED
     return reduce_term(z3.Extract(bits - 1, 0, value)) if bits < value.size() else value
 
 
@@ -176,7 +179,7 @@ def add_sent_integer(call: Call) -> Any:
 def add_sent_boolean(call: Call) -> Any:
     path = _make_path(call.state, _read_name(call, 0))
     value = call.arguments[1]
-    if value is not UNDEFINED:
+    if isinstance(value, int) or is_term(value):
         value = compare_integers("ne", value, 0, 64)
         value = value if isinstance(value, int) else make_bits(make_truth(value), 1)
     _add_sent(call.state, path, value, (InputKind.BOOLEAN, 1, False))
@@ -186,7 +189,7 @@ def add_sent_boolean(call: Call) -> Any:
 def add_sent_float64(call: Call) -> Any:
     path = _make_path(call.state, _read_name(call, 0))
     value = call.arguments[1]
-    value = value if value is UNDEFINED else make_float_bits(value, 64)
+    value = make_float_bits(value, 64) if isinstance(value, int | float) or is_term(value) else UNDEFINED
     _add_sent(call.state, path, value, (InputKind.FLOAT64, 64, True))
 
 
@@ -194,7 +197,7 @@ def add_sent_float64(call: Call) -> Any:
 def add_sent_float32(call: Call) -> Any:
     path = _make_path(call.state, _read_name(call, 0))
     value = call.arguments[1]
-    value = value if value is UNDEFINED else make_float_bits(value, 32)
+    value = make_float_bits(value, 32) if isinstance(value, int | float) or is_term(value) else UNDEFINED
     _add_sent(call.state, path, value, (InputKind.FLOAT32, 32, True))
 
 
