@@ -384,7 +384,7 @@ def test_explain_knows_families(say):
 
 
 def test_an_unknown_name_to_select_gets_the_nearest_and_all_families(say, tmp_path):
-    families = "families are api, general, graph, interfaces, logic, packages, qos, sources, versions"
+    families = "families are api, general, graph, interfaces, logic, packages, qos, sources, values, versions"
     said = say("check", tmp_path, "--select", "zzzz")
     assert (said.status, said.err.partition("; ")[2]) == (2, families + "\n")
     said = say("check", tmp_path, "--select", "grpah")
