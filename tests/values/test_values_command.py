@@ -119,3 +119,40 @@ def test_a_fault_of_the_explorer_costs_one_callback(tmp_path, monkeypatch):
     assert status == 0, err
     (sender,) = json.loads(out)["callbacks"]
     assert "made for this test" in sender["reason"] and "fault of rosimpact" in sender["reason"]
+
+FOLLOWER = """
+#include <ros/ros.h>
+#include <std_msgs/Int32.h>
+class Follower {
+ public:
+  int side;
+  int seen;
+  void onSide(const std_msgs::Int32& m) { Follower::side = m.data; }
+  void onSeen(const std_msgs::Int32& m) { seen = m.data; }
+  void steer(ros::Publisher& pub) {
+    std_msgs::Int32 out;
+    out.data = Follower::side;
+    pub.publish(out);
+  }
+};
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "follower");
+  ros::NodeHandle n;
+  Follower one;
+  ros::Subscriber a = n.subscribe("side", 1, &Follower::onSide, &one);
+  ros::Subscriber b = n.subscribe("seen", 1, &Follower::onSeen, &one);
+  ros::Publisher pub = n.advertise<std_msgs::Int32>("wheel", 1);
+  while (ros::ok()) { ros::spinOnce(); one.steer(pub); }
+}
+"""
+
+
+@needs_clang
+def test_a_member_of_an_object_of_main_that_another_method_reads(tmp_path):
+    shutil.copytree(LAMP, tmp_path / "ws")
+    (tmp_path / "ws/src/lamp/scripts/sender.py").unlink()
+    (tmp_path / "ws/src/lamp/src/lamp_node.cpp").write_text(FOLLOWER)
+    status, out, err = run(str(tmp_path / "ws"), "--format", "json", "--no-publishers")
+    assert status == 0, err
+    counts = {one["callback"]: one["ways"] for one in json.loads(out)["callbacks"]}
+    assert set(counts["Follower::onSide"]) == {"handled"} and set(counts["Follower::onSeen"]) == {"ignored"}

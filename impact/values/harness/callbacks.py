@@ -132,7 +132,7 @@ class ClassReader:
         for path, file in self._uses.items():
             for function in file.functions:
                 for use in function.uses:
-                    for part in use.path.split("."):
+                    for part in use.path.replace("::", ".").split("."):
                         self._named.setdefault(part, set()).add((path, function.line))
 
     def find_class(self, fn: Fn | None) -> Cls | None:
@@ -202,7 +202,7 @@ class ClassReader:
                 if (path, function.line) in makers:
                     continue
                 for use in function.uses:
-                    if use.how in ("write", "change") and name in use.path.split(".")[:2]:
+                    if use.how in ("write", "change") and name in map(get_tail, use.path.split(".")[:2]):
                         return True
         return False
 
@@ -270,7 +270,8 @@ def _make_member(member: DataMember, written: bool, read: bool) -> ObservedMembe
 
 def _split_target(path: str) -> list[str]:
     parts = [part for part in path.split(".") if part and part != "[]"]
-    return parts[1:2] if parts[:1] == ["this"] else parts[:1]
+    # `Class::member_` is a member as `this->member_` is.
+    return [get_tail(part) for part in (parts[1:2] if parts[:1] == ["this"] else parts[:1])]
 
 
 def _spell_literal(value: FlowExpr | None) -> str:

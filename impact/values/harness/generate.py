@@ -258,6 +258,11 @@ class HarnessWriter:
             cls = self._find_built(callback)
             members = self.reader.list_members(cls, callback.function) if cls is not None else []
             lines += _write_state(members, "node->", "this.", every=False)
+        elif (cls := self.reader.find_class(callback.function)) is not None and any(
+            one.is_read for one in self.reader.list_members(cls, callback.function)
+        ):
+            # The object is one that main has: what the callback changes in it is not watched.
+            lines.append("  ri::lose_member();")
         lines += _write_state(
             self.reader.list_variables(callback.path, callback.function), "::", "global.", every=False
         )
