@@ -18,6 +18,8 @@ def read_tables() -> int:
     from ..impact.targets.gz_systems import load_gz_systems
     from ..impact.targets.machine.sonames import load_sonames
     from ..impact.targets.providers.apt import load_apt
+    from ..impact.targets.providers.archive import load_archives
+    from ..impact.targets.providers.compiled import load_compiled
     from ..impact.targets.providers.includes import load_offered
     from ..impact.targets.providers.libraries import load_libraries
     from ..impact.targets.providers.library import include_roots
@@ -52,7 +54,7 @@ def read_tables() -> int:
         changes.load_uses(kind)
     for load in (
         *(changes.load_rows, changes.load_transitive, parameters.load_renamed_parameters, load_sonames, load_offered),
-        *(index_headers, load_gazebo_topics, load_gz_systems, load_tree_nodes),
+        *(index_headers, load_gazebo_topics, load_gz_systems, load_tree_nodes, load_archives, load_compiled),
         *(lambda: load_apt("ubuntu jammy"), lambda: load_shipped().about),
     ):
         load()

@@ -246,7 +246,7 @@ def test_closed_streams(ws, cache, closed):
     )
     assert run.returncode == (2 if 1 in closed else 1)
     assert "Traceback" not in run.stderr and "fault of rosimpact" not in run.stderr
-    assert 1 in closed or "unlinked-package" in run.stdout
+    assert 1 in closed or "ungiven-package" in run.stdout
 
 
 # (error, what is said of it)

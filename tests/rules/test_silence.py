@@ -1044,7 +1044,7 @@ SILENT = {
             CATKIN_NODE + "target_link_libraries(run ${catkin_LIBRARIES})\n"
             "install(TARGETS run RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})",
             "roscpp",
-            run_cpp="#include <ros/ros.h>\n" + MAIN,
+            run_cpp='#include <ros/ros.h>\nint main(int c, char** v) { ros::init(c, v, "run"); }\n',
         ),
         ("CMakeLists.txt", "target_link_libraries(run ${catkin_LIBRARIES})", ""),
     ),
@@ -1101,7 +1101,7 @@ SILENT = {
             "target_link_libraries(run yaml-cpp::yaml-cpp)\ntarget_link_libraries(walk yaml-cpp)\n"
             "install(TARGETS run walk DESTINATION lib/${PROJECT_NAME})",
             "yaml-cpp",
-            run_cpp="#include <yaml-cpp/yaml.h>\n" + MAIN,
+            run_cpp='#include <yaml-cpp/yaml.h>\nint main() { return YAML::LoadFile("a.yaml").size(); }\n',
         ),
         ("CMakeLists.txt", "target_link_libraries(walk yaml-cpp)\n", ""),
     ),

@@ -542,7 +542,15 @@ class FlowValues:
 
     def _list_given_elements(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         """The elements of a list of texts that a launch gives to a parameter; nothing where it may be another list."""
-        if not self.settings or value.kind not in ("name", "call") or len(seen) > _FAR:
+        if value.kind not in ("name", "call"):
+            return
+        if self._works:
+            self._works[-1].note_depth(_FAR, len(seen))
+        if len(seen) > _FAR:
+            return
+        if self._works:
+            self._works[-1].is_open = bool(self.settings or self.arguments)
+        if not self.settings:
             return
         found = list(self._evaluate(value, fn, line, (*seen, ("elements", fn, value.text))))
         given = [one for one in found if one.how == "launch" and one.text is not None]
