@@ -156,3 +156,41 @@ def test_a_member_of_an_object_of_main_that_another_method_reads(tmp_path):
     assert status == 0, err
     counts = {one["callback"]: one["ways"] for one in json.loads(out)["callbacks"]}
     assert set(counts["Follower::onSide"]) == {"handled"} and set(counts["Follower::onSeen"]) == {"ignored"}
+
+PACED = """
+#include <ros/ros.h>
+#include <std_msgs/Int32.h>
+class Pacer {
+ public:
+  explicit Pacer(ros::NodeHandle& n) : last_(ros::Time::now()) {
+    pub_ = n.advertise<std_msgs::Int32>("wheel", 1);
+    sub_ = n.subscribe("side", 1, &Pacer::onSide, this);
+  }
+  void onSide(const std_msgs::Int32& m) {
+    const ros::Time now = ros::Time::now();
+    if (now.sec - last_.sec < 2) return;
+    pub_.publish(m);
+  }
+ private:
+  ros::Time last_;
+  ros::Publisher pub_;
+  ros::Subscriber sub_;
+};
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "pacer");
+  ros::NodeHandle n;
+  Pacer pacer(n);
+  ros::spin();
+}
+"""
+
+
+@needs_clang
+def test_time_goes_on_between_two_calls(tmp_path):
+    shutil.copytree(LAMP, tmp_path / "ws")
+    (tmp_path / "ws/src/lamp/scripts/sender.py").unlink()
+    (tmp_path / "ws/src/lamp/src/lamp_node.cpp").write_text(PACED)
+    status, out, err = run(str(tmp_path / "ws"), "--format", "json", "--no-publishers")
+    assert status == 0, err
+    (pacer,) = json.loads(out)["callbacks"]
+    assert set(pacer["ways"]) == {"handled", "ignored"}

@@ -82,13 +82,18 @@ template <class T, class D> struct TimeBase {
   bool operator<=(const T &o) const { return toNSec() <= o.toNSec(); }
   bool operator>=(const T &o) const { return toNSec() >= o.toNSec(); }
   static T now() {
+    static int asked = 0;
+    static uint32_t sec = 0, nsec = 0;
     T r;
-    ri_enter("~now");
+    ri_enter("~now"); ri_enter_index(asked);
     r.sec = static_cast<uint32_t>(ri_integer("sec", 32, 0));
     r.nsec = static_cast<uint32_t>(ri_integer("nsec", 32, 0));
-    ri_leave();
+    ri_leave(); ri_leave();
     ri_assume(r.nsec < 1000000000u);
     ri_assume(r.sec < 2147483648u);
+    // Not before a time that was given already.
+    if (asked++) ri_assume((r.sec > sec) | ((r.sec == sec) & (r.nsec >= nsec)));
+    sec = r.sec; nsec = r.nsec;
     return r;
   }
   static bool isValid() { return true; }
