@@ -155,7 +155,6 @@ class Survey:
                 chosen += [
                     one for one in self._callbacks[language] if (one.path, one.line) in places and one not in chosen
                 ]
-        found: list[CallbackAnswer] = []
         offline: list[bool] = []
         targets = [*self._list_cpp(self._open_session(), rows["cpp"]), *self._list_python(rows["python"])]
         ready = [number for number, one in enumerate(targets) if not one.answer.reason]

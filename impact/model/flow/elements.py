@@ -51,7 +51,7 @@ class HeldList(NamedTuple):
 
 class Elements:
     """The elements of the lists and dictionaries of a body of code. runs: which functions run; way: the only call
-    through which a function is reached; made: by constructor who gives it its arguments, where that is told."""
+    through which a function is reached; made: by constructor who gives it its arguments, where that is known."""
 
     def __init__(
         self, code: FlowCode, runs: Callable[[Fn], bool] = lambda fn: True, way: Mapping[Fn, FlowCall] | None = None,

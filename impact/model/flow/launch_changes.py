@@ -329,7 +329,7 @@ class _Comparison:
         pairs = list(self._pair_launches())
         found = [one for pair in pairs if (one := self._compare_launch(*pair, self.changed, used)) is not None]
         systems = [*self._compare_systems(used)]
-        # What starts together is told of once, with all that it meets.
+        # What starts together is reported once, with all that it meets.
         whole = {path for paths, _ in systems for path in paths}
         found = [*(one for _, one in systems), *(one for one in found if one.path not in whole)]
         covered = {path for one in found for node in one.nodes for path in node.list_files()}

@@ -1,11 +1,11 @@
 """What the sources of a package use of libraries that need a link, for the rules on links."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from typing import NamedTuple
 
 from ...model.package import IncludeUse
 from ...targets.platform import strip_separators
-from ...targets.providers.compiled import load_compiled
+from ...targets.providers.compiled import CompiledName, load_compiled
 from ...targets.providers.libraries import load_libraries
 from ..vocabulary import Package, TargetView
 
@@ -22,14 +22,8 @@ class LibraryUse(NamedTuple):
 
 def list_library_uses(package: Package) -> Iterator[LibraryUse]:
     """The uses of platform libraries in files that targets compile, one for each file and library."""
-    known = load_compiled()
-    for path, names in package.linked.compiled:
-        seen: set[str] = set()
-        for name in sorted(names, key=lambda name: name not in known.functions):
-            found = known.find(name)
-            if not found.ros and found.owner not in seen:
-                seen.add(found.owner)
-                yield LibraryUse(path, name, found.owner, _list_words(found.owner, found.stem))
+    for path, name, found in _list_first_uses(package, lambda found: not found.ros):
+        yield LibraryUse(path, name, found.owner, _list_words(found.owner, found.stem))
 
 
 def _list_words(library: str, stem: str) -> tuple[str, ...]:
@@ -48,14 +42,24 @@ def find_library_include(view: TargetView, package: Package, use: LibraryUse, ta
 def list_package_uses(view: TargetView, package: Package) -> Iterator[tuple[str, str, str]]:
     """Of files that targets compile: (path, a released package of which it surely uses something that is compiled, that
     name), one for each file and package."""
-    known, ros = load_compiled(), view.target.ros
+    left_out = {package.name, *view.workspace.packages}
+    uses = _list_first_uses(package, lambda found: view.target.ros in found.ros, left_out)
+    yield from ((path, found.owner, name) for path, name, found in uses)
+
+
+def _list_first_uses(
+    package: Package, fits: Callable[[CompiledName], bool], left_out: Collection[str] = ()
+) -> Iterator[tuple[str, str, CompiledName]]:
+    """(path, name, whose it is) of what files that targets compile use of owners that fit, one for each file and owner,
+    a function before a class."""
+    known = load_compiled()
     for path, names in package.linked.compiled:
-        seen = {package.name, *view.workspace.packages}
+        seen = set(left_out)
         for name in sorted(names, key=lambda name: name not in known.functions):
             found = known.find(name)
-            if ros in found.ros and found.owner not in seen:
+            if fits(found) and found.owner not in seen:
                 seen.add(found.owner)
-                yield path, found.owner, name
+                yield path, name, found
 
 
 def find_package_include(

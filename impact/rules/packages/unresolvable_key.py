@@ -2,7 +2,8 @@
 
 What it does
     Reports dependencies of a manifest that are neither in the workspace nor released on the target, and that are rosdep
-    keys, but none for the target's platform; and keys that stand for a package which the platform's archive has not.
+    keys, but none for the target's platform; and keys of a package that the platform's archive does not
+    have.
 
 Why it breaks
     `rosdep install` stops with "No definition of [x] for OS version", or where apt says "Unable to locate package";
@@ -10,7 +11,7 @@ Why it breaks
 
 Severity
     error; warning for what only the documentation is made with (`doc_depend`), which `rosdep install` leaves out, and
-    for what Ubuntu's archive lacks, since that is told by lists of files and by Debian's archives.
+    for what Ubuntu's archive lacks, since only lists of files and Debian's archives show that.
 
 Example
     <depend>eigen3</depend>                     <!-- which is a key of other platforms -->

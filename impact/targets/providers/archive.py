@@ -44,7 +44,7 @@ class Archives:
         return _index(self._table.lacking)
 
     def lacks(self, platform: str, package: str) -> bool:
-        """Whether a platform's archive surely has not got a package, which another one has."""
+        """Whether a platform's archive surely lacks a package that another one has."""
         table, bits = self._table, self._bits.get(package)
         if bits is None:
             return False
