@@ -239,7 +239,7 @@ def _is_string_type(written: str) -> bool:
 @lru_cache(maxsize=100_000)
 def is_number(text: str) -> bool:
     """Whether a text is a whole number that a program could count to."""
-    return len(text) < 19 and text.isdecimal()
+    return len(text) < 19 and text.isdecimal() and (text[0] != "0" or text == "0")
 
 
 @lru_cache(maxsize=100_000)

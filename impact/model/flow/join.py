@@ -463,6 +463,8 @@ class Join:
             written = self.calls.find_argument(use, use.row.topic)
             if written is not None and written.kind != "text" and not self.calls.is_node(written, use.fn):
                 default = _spell_open(written)  # what the code gives is not known
+        if use is not None and name and self._is_anonymous(use, running):
+            name += make_open_part("_<anonymous>")
         full = "" if unknown else normalise("/" + (name or default).lstrip("/"))
         if use is not None and full:
             full = self.objects.join_namespace(use, full.lstrip("/"), running)
@@ -473,6 +475,16 @@ class Join:
             program.line,
         )  # fmt: skip
         return node, use
+
+    def _is_anonymous(self, use: FrameworkCall, running: FlowValues) -> bool:
+        """Whether the name that a use gives may end in what is made up at every start of the program. running: what
+        expressions are worth in it."""
+        asked = self.calls.find_argument(use, use.row.anonymous) if use.row.anonymous else None
+        if asked is None:
+            return False
+        if use.fn.source.facts.language == "cpp":
+            return "AnonymousName" in unparse(asked)
+        return any(value.text != "False" for value in running.evaluate(asked, use.fn, use.call.line))
 
     def _list_plugin_names(self, plugin: str, named: list[FrameworkCall]) -> list[FrameworkCall]:
         """The uses that name the nodes of the class of a plugin, its own before those of its bases."""

@@ -21,6 +21,7 @@ from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, i
 from .conditions import ConditionReader, DecidedCondition, is_truth
 from .elements import Elements, ListElement
 from .graph import How
+from .literals import spell_number
 from .names import is_open, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
 from .reaching import LOOPS, FlowValue, ReachingValues
@@ -290,7 +291,9 @@ class FlowValues:
         if kind == "number" and value.text[:1] == "'":
             one = _read_character(value.text)
             yield FlowValue(one) if one else FlowValue(None, "unresolved", f"`{value.text}` is not followed")
-        elif kind in ("text", "number"):
+        elif kind == "number":
+            yield FlowValue(spell_number(value.text, fn.source.facts.language == "cpp"))
+        elif kind == "text":
             yield FlowValue(value.text)
         elif kind == "name":
             yield from self._evaluate_name(value.text, fn, line, seen)
