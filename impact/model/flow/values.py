@@ -19,7 +19,8 @@ from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number
 from .conditions import ConditionReader, DecidedCondition, is_truth
-from .elements import Elements, ListElement
+from .elements import SETTING, Elements, ListElement
+from .given_lists import GivenLists
 from .graph import How
 from .literals import spell_number
 from .names import is_open, resolve_ros1_name
@@ -34,6 +35,8 @@ NODE, NAMESPACE = "{node}", "{ns}"
 LOST = "?"
 """Begins the namespace of a node handle that is not known."""
 _MOST = 12
+# Of loops whose turns are looked at one by one.
+_MOST_TURNS = 64
 _DEEPEST = 12
 _FAR = 6
 # Up to here it is asked of each value whether its branch is come to.
@@ -72,6 +75,7 @@ _NODE_NAME = frozenset(("get_name", "getName", "get_fully_qualified_name"))
 _NODE_NAMESPACE = frozenset(("get_namespace", "getNamespace"))
 
 
+_NOT_SET = FlowValue(None, "given", "a parameter that the launch does not set")
 _NOT_GIVEN = FlowValue(None, "given", "an argument of the command line that is not given")
 
 
@@ -87,12 +91,13 @@ class Work:
     particular makes; makers: who makes the others; made: all of these; is_open: whether a launch gives anything. Where
     nothing asked, made and what is true or false are None, and arguments is UNASKED. higher, lower: by how much the
     number of things that are being evaluated could be larger or smaller without another answer of those that ask for
-    it. is_alone: whether nothing else had a part in it that may be otherwise another time. way: that of whoever works
-    it out."""
+    it. walks: the loops of which something is an element, with the number of their turns; crossed: those of them that
+    several parts of one text are elements of; below: the settings below a prefix that were asked for. is_alone: whether
+    nothing else had a part in it that may be otherwise another time. way: that of whoever works it out."""
 
     __slots__ = (
-        "arguments", "free", "higher", "idle", "is_alone", "is_limited", "is_open", "items", "lines", "lower", "made",
-        "makers", "runs", "settings", "unmade", "way", "ways",
+        "arguments", "below", "crossed", "free", "higher", "idle", "is_alone", "is_limited", "is_open", "items",
+        "lines", "lower", "made", "makers", "runs", "settings", "unmade", "walks", "way", "ways",
     )  # fmt: skip
 
     def __init__(self, way: Mapping[Fn, FlowCall]):
@@ -100,6 +105,9 @@ class Work:
         self.items: set[tuple] = set()
         self.lines: set[tuple[Fn, int]] = set()
         self.settings: dict[str, FlowValue | None] = {}
+        self.below: dict[str, dict[str, str]] = {}
+        self.walks: dict[tuple, int] = {}
+        self.crossed: set[tuple] = set()
         self.runs: set[Fn] = set()
         self.idle: set[Fn] = set()
         self.free: set[Fn] = set()
@@ -130,6 +138,9 @@ class Work:
         if other.is_limited is not None:
             self.is_limited = other.is_limited
         self.note_given(other)
+        self.crossed |= other.crossed
+        for loop, count in other.walks.items():
+            self.walks[loop] = max(count, self.walks.get(loop, 0))
         if other.higher - further < self.higher:
             self.higher = other.higher - further
         if other.lower + further < self.lower:
@@ -138,6 +149,7 @@ class Work:
     def note_given(self, other: Work) -> None:
         """Notes of what something else rests on what a launch gives."""
         self.settings.update(other.settings)
+        self.below.update(other.below)
         if other.arguments is not UNASKED:
             self.arguments = other.arguments
         if other.is_open is not None:
@@ -215,6 +227,8 @@ class FlowValues:
         # Values of variables, by all that does not show in what they rest on; and what is being worked out.
         self._known: dict[tuple, list[_Known]] = {}
         self._works: list[Work] = []
+        # Which turn of a loop is looked at.
+        self._turns: dict[tuple, int] = {}
 
     def apply_launch(
         self, settings: Mapping[str, str], arguments: tuple[str, ...] | None = None, node: str = ""
@@ -248,6 +262,7 @@ class FlowValues:
             other.__dict__[name] = getattr(self, name)
         other._budget, other._decided = self._budget, self._decided
         other._known, other._works, other._asking = self._known, self._works, self._asking
+        other._turns = self._turns
         other.find_prefix, other._prefixes = self.find_prefix, self._prefixes
         other._asked_prefixes = self._asked_prefixes
         other.find_message_text = self.find_message_text
@@ -273,9 +288,50 @@ class FlowValues:
         """The same with all that is not known."""
         most = _MOST_STEPS if self._budget[0] > 0 else _FEW_STEPS
         self._left = most
-        found = list(dict.fromkeys(self._evaluate(value, fn, line, ())))
+        outer = dict(self._turns)
+        self._turns.clear()
+        try:
+            found, work = self.record(lambda: list(dict.fromkeys(self._evaluate(value, fn, line, ()))))
+            if work.crossed:
+                found = list(dict.fromkeys(self._list_by_turn(work, value, fn, line)))
+        finally:
+            self._turns.update(outer)
         self._budget[0] -= most - max(self._left, 0)
         return found
+
+    def _list_by_turn(self, work: Work, value: FlowExpr | None, fn: Fn, line: int) -> Iterator[FlowValue]:
+        """The same where several parts of a text are of one turn of a loop each."""
+        loops = sorted(work.crossed, key=str)
+        turns = product(*(range(work.walks[loop]) for loop in loops))
+        for row in islice(turns, _MOST_TURNS):
+            self._turns.update(zip(loops, row, strict=True))
+            try:
+                found = list(self._evaluate(value, fn, line, ()))
+            finally:
+                self._turns.clear()
+            yield from found
+        if next(turns, None) is not None:
+            yield FlowValue(None, "unresolved", "a loop of too many turns", beside=True)
+
+    def take_turn(self, loop: tuple, found: list[ListElement]) -> list[ListElement]:
+        """Of the elements that a loop goes through those of the turn that is looked at."""
+        if self._works and len(found) > 1:
+            walks = self._works[-1].walks
+            walks[loop] = max(len(found), walks.get(loop, 0))
+        turn = self._turns.get(loop)
+        return found if turn is None else found[turn : turn + 1]
+
+    def _note_crossed(self, parts: Iterable[Work]) -> None:
+        """Notes the loops that several parts of a text are elements of. parts: what each of them rests on."""
+        loops = [loop for part in parts for loop in part.walks]
+        if self._works:
+            self._works[-1].crossed.update(loop for loop in loops if loops.count(loop) > 1)
+
+    def _record_parts(self, parts: Iterable[FlowExpr], fn: Fn, line: int, seen: tuple) -> list[list[FlowValue]]:
+        """The first values of each part of a text."""
+        rows = [self.record(lambda part=part: _take_first(self._evaluate(part, fn, line, seen))) for part in parts]
+        self._note_crossed(rests for found, rests in rows if len(found) > 1)
+        return [found for found, _ in rows]
 
     def _evaluate(self, value: FlowExpr | None, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         if value is None:
@@ -295,6 +351,8 @@ class FlowValues:
             yield FlowValue(spell_number(value.text, fn.source.facts.language == "cpp"))
         elif kind == "text":
             yield FlowValue(value.text)
+        elif kind == SETTING:
+            yield FlowValue(value.text, "launch")
         elif kind == "name":
             yield from self._evaluate_name(value.text, fn, line, seen)
         elif kind == "join":
@@ -338,7 +396,7 @@ class FlowValues:
             yield one if sure or one.how not in ("literal", "given") else one._replace(how="default")
 
     def _evaluate_join(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
-        pieces = [_take_first(self._evaluate(part, fn, line, seen)) for part in value.parts]
+        pieces = self._record_parts(value.parts, fn, line, seen)
         plain = value.text in ("+", "/", "%") and not any(map(_is_string, value.parts))
         for row in islice(product(*pieces), _MOST):
             # Numbers are added; of what may be either, it is not known.
@@ -468,7 +526,7 @@ class FlowValues:
     @cached_property
     def elements(self) -> Elements:
         """What lists and dictionaries of the code hold."""
-        return Elements(self.code, self.runs, self.way, self.made)
+        return Elements(self.code, self.runs, self.way, self.made, GivenLists(self).find, self.take_turn)
 
     def _evaluate_chosen(
         self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
@@ -660,7 +718,7 @@ class FlowValues:
         into before has no more of what its object was made with."""
         key = (variable, fn, origins, line, filled_before, bool(self.node))
         rows = self._known.setdefault(key, [])
-        for known in rows:
+        for known in rows if not self._turns else ():
             if self._holds_again(known, seen):
                 self._left -= known.steps
                 if self._works:
@@ -673,7 +731,7 @@ class FlowValues:
         )
         if self._works:
             self._works[-1].is_alone &= work.is_alone
-        if work.is_alone and self._left >= 0:
+        if work.is_alone and self._left >= 0 and not self._turns:
             within, asking = frozenset(work.items.intersection(seen)), _list_asking(seen, work.lines)
             rows.append(_Known(values, work, within, asking, len(seen), before - self._left))
             del rows[:-_MOST_KNOWN]
@@ -703,6 +761,7 @@ class FlowValues:
             and (not rests.makers or all(made.get(fn) == rows for fn, rows in rests.makers.items()))
             and (rests.made is None or rests.made is made)
             and (rests.arguments is UNASKED or rests.arguments == self.arguments)
+            and all(self.list_settings_below(prefix) == given for prefix, given in rests.below.items())
             and (not rests.settings or all(self.find_setting(name) == v for name, v in rests.settings.items()))
         )
 
@@ -1290,6 +1349,30 @@ class FlowValues:
             given = None
         return FlowValue(given, "launch") if given is not None else None
 
+    def note_open(self) -> bool:
+        """Whether a launch gives anything, which is noted."""
+        if self._works:
+            self._works[-1].is_open = bool(self.settings or self.arguments)
+        return bool(self.settings)
+
+    def list_settings_below(self, prefix: str) -> dict[str, str]:
+        """What a launch sets below a prefix, by the rest of the name; in ROS 1 by a global prefix."""
+        head = f"{prefix}{'/' if self.node else '.'}"
+        found = {name[len(head) :]: value for name, value in self.settings.items() if name.startswith(head)}
+        if self._works:
+            self._works[-1].below[prefix] = found
+        return found
+
+    def read_server(self, name: str, use: FrameworkCall) -> tuple[str | None, dict[str, str]]:
+        """What the parameter server of ROS 1 has under the name that a use gives a parameter: a value, or what is below
+        it."""
+        setting = self._make_setting_name(name, use)
+        if not self.node or setting.startswith(LOST):
+            return None, {}
+        given = self._find_setting_of(use, name)
+        below = self.list_settings_below(resolve_ros1_name(setting, self.node))
+        return given.text if given is not None else None, below
+
     def _find_parameter_name(self, use: FrameworkCall, seen: tuple) -> str:
         """The name that a use gives a parameter, empty where it is not known."""
         written = self.calls.find_argument(use, use.row.topic)
@@ -1304,8 +1387,19 @@ class FlowValues:
             self._works[-1].settings[setting] = given
         return given
 
+    def _list_given_names(self, use: FrameworkCall, seen: tuple) -> list[FlowValue]:
+        """The names that a use gives a parameter, where a launch tells them and sets each of these parameters."""
+        written = self.calls.find_argument(use, use.row.topic)
+        found = list(self._evaluate(written, use.fn, use.call.line, seen)) if written is not None else []
+        told = len(found) > 1 and all(one.how == "launch" and one.text for one in found)
+        return [self._find_setting_of(use, one.text or "") or _NOT_SET for one in found] if told else []
+
     def _evaluate_parameter(self, use: FrameworkCall, seen: tuple) -> Iterator[FlowValue]:
         """The default of the parameter that a use declares or reads."""
+        several = self._list_given_names(use, seen)
+        if several:
+            yield from several
+            return
         name = self._find_parameter_name(use, seen)
         given = self._find_setting_of(use, name)
         if given is not None:
@@ -1396,7 +1490,7 @@ def _get_key(value: FlowExpr) -> FlowExpr:
 
 def _mentions(value: FlowExpr, path: str) -> bool:
     """Whether an expression has a path in it."""
-    named = value.text == path or value.text.startswith(f"{path}.")
+    named = value.kind != "text" and (value.text == path or value.text.startswith(f"{path}."))
     inner = (*value.parts, *((value.receiver,) if value.receiver is not None else ()))
     return named or any(_mentions(part, path) for part in inner)
 
