@@ -288,7 +288,7 @@ class Survey:
             path, line = one.function_place
             answer = CallbackAnswer(
                 one.callback, one.kind, "cpp", path, line, one.message_type, one.topics, one.nodes, self.bounds,
-                one.reason, stood_for=one.stood_for,
+                one.reason, stood_for=one.stood_for, compiled_in=one.compiled_in, rounds=one.rounds,
             )  # fmt: skip
             identity = one.kind, one.path, one.line, one.callback
             yield _Target(identity, answer, _name_constants(one.constants, self.workspace.ros), one)
