@@ -751,15 +751,18 @@ class Executor:
         if saved is None or count & (count - 1) == 0 or count <= 4:
             state.owner = object()
             frame.saved[block.number] = Visit(
-                {phi.result: frame.registers[phi.result] for phi in block.phis}, dict(state.objects),
+                {phi.result: frame.registers[phi.result] for phi in frame.function.phis
+                 if phi.result in frame.registers},
+                dict(state.objects),
                 len(state.conditions), fresh,
             )  # fmt: skip
 
     def _compare_visit(self, state: State, frame: Frame, saved: Visit) -> Any:
         """Whether all is as at an earlier visit: 0, 1 or a condition."""
         conditions: list[Any] = []
-        for phi in frame.block.phis:
-            before, now = saved.registers[phi.result], frame.registers[phi.result]
+        # Those of all blocks: a block may be jumped back to within a loop whose counter another block has.
+        for phi in frame.function.phis:
+            before, now = saved.registers.get(phi.result, UNDEFINED), frame.registers.get(phi.result, UNDEFINED)
             if is_same_value(before, now):
                 continue
             if phi.type.is_pointer or phi.type.is_aggregate or before is UNDEFINED or now is UNDEFINED:
