@@ -61,6 +61,14 @@ class Site(NamedTuple):
     types: tuple[TemplateType, ...] = ()
 
 
+class JoinedFilters(NamedTuple):
+    """Subscribers of filters that are given to one synchronizer, in their order. registered: path and line of the call
+    that gives it the callback."""
+
+    filters: tuple[Variable, ...]
+    registered: tuple[str, int]
+
+
 class Statement(NamedTuple):
     """A publish statement. sites: the publishers it may use. through: the function of the code's own called `publish`
     that it calls, which holds the statement that sends."""
@@ -607,18 +615,20 @@ class Sites:
         return found
 
     @cached_property
-    def joined_filters(self) -> list[tuple[Variable, ...]]:
-        """Subscribers of filters that are given to one synchronizer, in their order."""
+    def joined_filters(self) -> list[JoinedFilters]:
+        """The filters of each synchronizer whose callbacks take the messages in their order."""
         code = self.code
         sites = [one for one in self.endpoints if one.role == "subscriber" and not one.use.row.callback]
         filters = {self._find_variable(one.use) for one in sites} - {None}
         straight: dict[Variable, bool] = {}
+        registered: dict[Variable, tuple[str, int]] = {}
         for fn, call in code.list_calls_named(("registerCallback",)):
             name = call.callee.rpartition(".")[0]
             if name:
                 joint = code.identify(name, fn)
                 straight[joint] = straight.get(joint, True) and all(map(_is_in_order, call.arguments[:1]))
-        found: list[tuple[Variable, ...]] = []
+                registered.setdefault(joint, (fn.source.path, call.line))
+        found: list[JoinedFilters] = []
         for joint in straight:
             if not straight[joint]:
                 continue
@@ -626,16 +636,29 @@ class Sites:
                 arguments = given.arguments if isinstance(given, FlowCall) else given.parts
                 row = tuple(each for each in self._list_named(arguments, fn) if each in filters)
                 if row:
-                    found.append(row)
+                    found.append(JoinedFilters(row, registered[joint]))
         return found
 
     def find_position(self, site: Site) -> tuple[int, int] | None:
         """Which of the messages that come through a synchronizer is a subscriber's, and of how many; None where it is
         not known, or not one place."""
+        variable, rows = self._find_joined(site)
+        places = {(row.filters.index(variable), len(row.filters)) for row in rows if row.filters.count(variable) == 1}
+        return next(iter(places)) if len(places) == 1 else None
+
+    def find_joined(self, site: Site) -> tuple[tuple[str, ...], int, tuple[str, int]] | None:
+        """The types of all messages that come through the synchronizer of a subscriber, the place of its own among
+        them, and where the callback is registered; None where that is not known, or not one."""
+        rows = self._find_joined(site)[1]
+        place = self.find_position(site)
+        if place is None or len({row.filters for row in rows}) != 1:
+            return None
+        known = {self._find_variable(one.use): one.type for one in self.endpoints if one.role == "subscriber"}
+        return tuple(known.get(one, "") for one in rows[0].filters), place[0], rows[0].registered
+
+    def _find_joined(self, site: Site) -> tuple[Variable | None, list[JoinedFilters]]:
         variable = self._find_variable(site.use)
-        rows = [row for row in self.joined_filters if variable in row]
-        places = {(row.index(variable), len(row)) for row in rows if row.count(variable) == 1}
-        return next(iter(places)) if variable is not None and len(places) == 1 and rows else None
+        return variable, [row for row in self.joined_filters if variable is not None and variable in row.filters]
 
     @cached_property
     def joins(self) -> dict[Variable, list[Fn]]:
