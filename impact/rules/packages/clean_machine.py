@@ -165,7 +165,7 @@ def _collect_unknown_doubts(view: TargetView, package: Package, need: Need, name
     if any(debian and not any(map(_LIBRARY.search, debian)) for debian in map(view.list_debs, opaque)):
         return (Doubt.DISPENSABLE,)
     include = need.how == "include" and need.providers[0].kind == "system"
-    bundling = view.unknown_contents.list_unstored(package) if include else ()
+    bundling = view.unknown_contents.list_unread(package) if include else ()
     if opaque or bundling or view.unknown_contents.may_come_along(package, name, need.providers):
         return (Doubt.INCOMPLETE,)
     together = need.role == "test" and not view.roles.farm_makes_tests
