@@ -127,7 +127,7 @@ def _is_reached(view: TargetView, package: Package, need: Need) -> bool:
     if need.how == "launch":
         installs = read_installs(view, package)
         installs = list_copied(package) if installs is None else installs
-        return ".launch" in posixpath.basename(path) and bool(installs) and is_installed(installs, path)
+        return "launch" in posixpath.basename(path) and bool(installs) and is_installed(installs, path)
     if need.how != "import" or may_stay_behind(view, package, path):
         return False
     return path in package.linked.scripts or any(
