@@ -12,7 +12,7 @@ from ...model.package import find_folder_role, is_called_example
 from ..vocabulary import Doubt, Need, Package, TargetView
 from .data_files import list_copied
 from .dependants import list_compiled_elsewhere
-from .install_rules import is_installed, read_installs
+from .install_rules import is_installed, may_stay_behind, read_installs
 
 ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program", "environment"))
 """How CMake asks for something, so that the configuration stops without it."""
@@ -127,14 +127,13 @@ def _is_reached(view: TargetView, package: Package, need: Need) -> bool:
     if need.how == "launch":
         installs = read_installs(view, package)
         installs = list_copied(package) if installs is None else installs
-        return ".launch" in posixpath.basename(path) and bool(installs) and is_installed(installs, path)
-    return need.how == "import" and (
-        path in package.linked.scripts
-        or any(
-            path in file.list_module_paths(posixpath.dirname(setup), module)
-            for setup, file in package.linked.setup
-            for _, module, *_ in file.entry_points
-        )
+        return "launch" in posixpath.basename(path) and bool(installs) and is_installed(installs, path)
+    if need.how != "import" or may_stay_behind(view, package, path):
+        return False
+    return path in package.linked.scripts or any(
+        path in file.list_module_paths(posixpath.dirname(setup), module)
+        for setup, file in package.linked.setup
+        for _, module, *_ in file.entry_points
     )
 
 
@@ -165,7 +164,7 @@ def _collect_unknown_doubts(view: TargetView, package: Package, need: Need, name
     if any(debian and not any(map(_LIBRARY.search, debian)) for debian in map(view.list_debs, opaque)):
         return (Doubt.DISPENSABLE,)
     include = need.how == "include" and need.providers[0].kind == "system"
-    bundling = view.unknown_contents.list_unstored(package) if include else ()
+    bundling = view.unknown_contents.list_unread(package) if include else ()
     if opaque or bundling or view.unknown_contents.may_come_along(package, name, need.providers):
         return (Doubt.INCOMPLETE,)
     together = need.role == "test" and not view.roles.farm_makes_tests
