@@ -88,6 +88,8 @@ def removed_plugin(view: TargetView, package: Package):
                 yield Diagnostic(use.at, name, package.name, data, kind, doubts)
             continue
         found = find_missing(view, "plugin", name, _list_candidates(view, package, use))
+        if found is not None and view.may_have(found.package):
+            continue  # in another version, which was not read
         loaded = loaded or _is_read(view, use, head if found is None else found.package)
         if found is None:
             yield from find_gone_package(view, package, use, head, name, loaded or Doubt.LATE)
@@ -95,6 +97,8 @@ def removed_plugin(view: TargetView, package: Package):
         other = _find_respelling(view, found.package, name)
         doubts = (*list_place_doubts(view, use.role), loaded or Doubt.LATE, use.role != "test" or Doubt.TEST)
         found = found._replace(replacement=other, moved_to="") if other else found
+        if found.form == "never" and not found.alike and found.package not in view.build_environment(package):
+            doubts = (*doubts, Doubt.PRIVATE)
         yield diagnose(found, use.at, name, package.name, doubts)
 
 
