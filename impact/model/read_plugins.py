@@ -70,7 +70,7 @@ def _list_places(view: TargetView, roots: Iterable[str], uses: dict[str, list[Re
     while known != len(files) + len(called):
         known = len(files) + len(called)
         for use in [use for path in sorted(files) for use in uses.get(path, ()) if use.reference.macro in called]:
-            if use.reference.kind == "file":
+            if use.reference.kind == "file" and use.reference.name.endswith(_DESCRIPTION):
                 files.add(_find_path(view, use))
             elif use.reference.kind == "macro":
                 called.add(use.reference.name)
