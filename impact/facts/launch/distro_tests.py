@@ -37,7 +37,8 @@ def read_machine_test(text: str, negated: bool, held: Mapping[str, str]) -> Cond
         return match[0] if variable is None else value if match[1] else f"env('{variable[1]}')"
 
     test = _convert(_ARGUMENT.sub(replace, text), 0) if "ROS_" in text or held else ""
-    return Condition("python", test, negated) if "ROS_" in test else UNDECIDED
+    asks = _EVAL.match(text) is not None or _FUNCTION.match(text) is not None
+    return Condition("python", test, negated) if asks and "ROS_" in test else UNDECIDED
 
 
 def _convert(text: str, depth: int) -> str:
