@@ -2,7 +2,6 @@
 
 import pytest
 from joining import graph
-
 from rosimpact.impact.model.flow.literals import spell_number
 
 
