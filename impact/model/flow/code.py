@@ -39,6 +39,8 @@ _CHANGE_RANGE = frozenset(("transform", "replace", "replace_if", "remove", "remo
 # What says how a parameter is handed over, and nothing of what it is.
 _HANDED_OVER = re.compile(r"\bconst\b|\btypename\b|[&*]")
 _CHANGE_IN_PLACE = ("replace_", "erase_", "trim", "to_lower", "to_upper")
+# Methods of pluginlib's ClassLoader<T> that make a T.
+MAKES_PLUGIN = frozenset(("createInstance", "createSharedInstance", "createUniqueInstance", "createUnmanagedInstance"))
 # Endings of C++ files that hold no declarations for others.
 SOURCES = (".cpp", ".cc", ".cxx", ".c++", ".c", ".cu")
 
@@ -852,6 +854,10 @@ class FlowCode:
         if last in ("make_shared", "make_unique") or (last == "create" and "::" in name):
             scope = get_outer(name)
             return self.resolve_written(scope, fn.source, fn.scope) if scope not in ("std", "boost", "") else UNKNOWN
+        if last in MAKES_PLUGIN and "." in name:
+            loader = self.resolve_name_type(name.rpartition(".")[0], fn, depth + 1)
+            if loader.arguments:
+                return self.resolve_written(loader.arguments[0], fn.source, fn.scope)
         for target in self.list_targets(name, fn, depth + 1):
             if target.facts.returns:
                 return self.resolve_written(target.facts.returns, target.source, target.scope)

@@ -1219,11 +1219,19 @@ class FlowValues:
             for one in self._evaluate(value.parts[0], fn, line, seen):
                 yield one if one.text is None else one._replace(text=make_sibling(one.text, "camera_info"))
             return
+        if last == "getName" and len(value.parts) == 1 and head and self._is_loader(head, fn):
+            for one in self._evaluate(value.parts[0], fn, line, seen):
+                yield one if one.text is None else one._replace(text=re.split(r"[/:]", one.text)[-1])
+            return
         if last == "append" and len(value.parts) == 2 and "names" in value.text:
             first, second = value.parts
             yield from self._evaluate_join(FlowExpr("join", "", (first, FlowExpr("text", "/"), second)), fn, line, seen)
             return
         yield from self._evaluate_inner(value.text, fn, line, seen, value.parts)
+
+    def _is_loader(self, path: str, fn: Fn) -> bool:
+        """Whether a variable is pluginlib's loader, whose getName() strips a name of its package."""
+        return get_tail(self.code.resolve_name_type(path, fn).name) == "ClassLoader"
 
     def _evaluate_string_method(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         """What a method of a string of Python gives, and `os.path.join`."""
