@@ -1454,6 +1454,10 @@ class FlowValues:
                 found.setdefault(name.text, []).append(use)
         return found
 
+    def list_filling(self, variable: Variable) -> list[FrameworkCall]:
+        """The calls that fill a variable with the value of a parameter."""
+        return self.filled.get(variable, [])
+
     @cached_property
     def filled(self) -> dict[Variable, list[FrameworkCall]]:
         """Variables that a call fills with the value of a parameter."""
