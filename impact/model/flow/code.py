@@ -242,7 +242,7 @@ def _is_string_type(written: str) -> bool:
 @lru_cache(maxsize=100_000)
 def is_number(text: str) -> bool:
     """Whether a text is a whole number that a program could count to."""
-    return len(text) < 19 and text.isdecimal()
+    return len(text) < 19 and text.isdecimal() and (text[0] != "0" or text == "0")
 
 
 @lru_cache(maxsize=100_000)
@@ -789,6 +789,20 @@ class FlowCode:
         return next(iter(self.functions_in.get(source.path, ())), otherwise)
 
     @cache_method
+    def find_held_class(self, cls: Cls, name: str) -> Cls | None:
+        """The class of the code of which a member holds an object itself."""
+        for one in self.list_bases(cls):
+            for member in one.facts.members:
+                if member.name == name:
+                    held = member.type and not _points(member.type) and "<" not in member.type
+                    return self.find_class_of_type(member.type, one.source, one.name) if held else None
+        return None
+
+    def find_written_type(self, path: str, fn: Fn) -> str:
+        """The type that a variable is declared with, as written."""
+        return self.find_declared_type(self.identify(path, fn, 9), fn)[0]
+
+    @cache_method
     def _find_member_type(self, owner: str, name: str) -> tuple[str, CodeFile, str] | None:
         for cls in self.list_class_bodies(owner):
             for member in cls.facts.members:
@@ -1097,6 +1111,13 @@ class FlowCode:
                     cls = self.find_class(name, fn.source, fn.scope)
                     if cls is not None:
                         found.setdefault(cls.key, []).append((fn, arguments, line))
+        for cls in (cls for group in self.classes.values() for cls in group if cls.source.facts.language == "cpp"):
+            for member in cls.facts.members:
+                given = member.value
+                held = self.find_held_class(cls, member.name) if given is not None and given.kind == "make" else None
+                maker = next(iter(self.list_functions(cls)), None) if held is not None else None
+                if held is not None and given is not None and maker is not None:
+                    found.setdefault(held.key, []).append((maker, given.parts, member.line))
         return found
 
     @cached_property
@@ -1188,6 +1209,14 @@ def _find_made(fn: Fn, code: FlowCode) -> Iterator[tuple[str, tuple[FlowExpr, ..
             yield get_outer(call.callee), call.arguments, call.line
         elif fn.source.facts.language == "python" and (last[:1].isupper() or code.is_class(call.callee, fn)):
             yield code.resolve_name(call.callee, fn.source), call.arguments, call.line
+        elif last == "emplace_back" and call.callee != last and fn.source.facts.language == "cpp":
+            # Into a container of objects: of pointers, it is given one.
+            written = code.find_written_type(call.callee.rpartition(".")[0], fn)
+            cls = code.find_class_of_type(written, fn.source, fn.scope) if written and not _points(written) else None
+            if cls is not None and not _is_one_of(call.arguments, cls, fn, code):
+                yield cls.name, call.arguments, call.line
+        elif "." not in call.callee and fn.source.facts.language == "cpp" and code.is_class(call.callee, fn):
+            yield call.callee, call.arguments, call.line
         for argument in call.arguments:
             if argument.parts or argument.kind == "make":
                 for value in _list_makes(argument):
@@ -1196,6 +1225,34 @@ def _find_made(fn: Fn, code: FlowCode) -> Iterator[tuple[str, tuple[FlowExpr, ..
         if each.value.parts or each.value.kind == "make":
             for value in _list_makes(each.value):
                 yield value.text, value.parts, each.line
+        if each.target.startswith("this.") and fn.source.facts.language == "cpp":
+            yield from _list_initialised(each, fn, code)
+
+
+def _list_initialised(each: Assignment, fn: Fn, code: FlowCode) -> Iterator[tuple[str, tuple[FlowExpr, ...], int]]:
+    """The object that the initialiser of a constructor makes as a member: `left_(node, "left")`."""
+    value, name = each.value, each.target[5:]
+    given = value.parts if value.kind in ("make", "list") and not value.text else (value,)
+    if (value.kind == "make" and value.text) or value.kind not in ("make", "list", "name", "text"):
+        return
+    owner = code.find_owner(fn) if code.is_constructor(fn) else None
+    cls = code.find_held_class(owner, name) if owner is not None else None
+    if cls is not None and not _is_one_of(given, cls, fn, code):
+        yield cls.name, given, each.line
+
+
+def _is_one_of(arguments: tuple[FlowExpr, ...], cls: Cls, fn: Fn, code: FlowCode) -> bool:
+    """Whether arguments are one object of a class, which is copied or moved then."""
+    if len(arguments) != 1:
+        return False
+    one = arguments[0]
+    if one.kind == "call" and get_tail(one.text) == "move" and len(one.parts) == 1:
+        one = one.parts[0]
+    return code.find_class_of(code.resolve_type(one, fn, 3), fn) is cls
+
+
+def _points(type_: str) -> bool:
+    return "*" in type_ or "&" in type_ or "ptr" in type_.lower()
 
 
 def _list_makes(value: FlowExpr, depth: int = 0) -> list[FlowExpr]:

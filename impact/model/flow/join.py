@@ -40,7 +40,17 @@ from .graph import (
     Way,
 )
 from .loads import Loaded, list_loaded
-from .names import NameRefused, is_open, join_name, make_open_part, normalise, resolve_ros1_name, resolve_ros2_name
+from .names import (
+    NameRefused,
+    RemappingRule,
+    is_open,
+    join_name,
+    make_open_part,
+    normalise,
+    remap_ros2_name,
+    resolve_ros1_name,
+    resolve_ros2_name,
+)
 from .nodes import BuiltPackage, CodeReach, StartableProgram
 from .objects import NodeObjects, make_key
 from .qos import apply_overrides, find_qos, list_overridable
@@ -80,7 +90,7 @@ class Running(NamedTuple):
     expressions are worth there; classes: by key. loaded: how the node loads this program, which is a nodelet then.
     objects: of a program that is several nodes the keys of those that this is, as NodeObject has them, None where it is
     one; others: those of its other nodes alone, where this is the first of them, which has all that no key is about.
-    fixed: what a launch does not change of its name, as NodeObject has it."""
+    fixed: what a launch does not change of its name, remaps: its own remappings, as NodeObject has them."""
 
     program: StartableProgram
     node: Node
@@ -92,6 +102,7 @@ class Running(NamedTuple):
     objects: frozenset[str] | None = None
     others: frozenset[str] | None = None
     fixed: frozenset[str] = frozenset()
+    remaps: tuple[RemappingRule, ...] = ()
 
 
 Owner = Running | Node | None
@@ -275,20 +286,23 @@ class Join:
         first = [one for one in objects if one.name == running.node.name or use in one.uses]
         first = [one for one in first if one.name == running.node.name] or first
         further = [one for one in objects if one not in first] if first else []
+        told = first[0] if len(first) == 1 else None
         if not further:
-            yield running
+            yield running if told is None else running._replace(fixed=told.fixed, remaps=told.remaps)
             return
         count = Counter(key for one in objects for key in one.keys)
         # Which of several nodes any object of a class is, is not known: it counts for the first.
         shared = {key for key in count if count[key] > 1 and key.startswith("any ")}
         own = shared.union(*(one.keys for one in first))
         others = frozenset().union(*(one.keys for one in further)) - own
-        values = first[0].values if len(first) == 1 else running.values
-        fixed = first[0].fixed if len(first) == 1 else frozenset()
-        yield running._replace(objects=own, others=others, values=values, fixed=fixed)
+        values = told.values if told is not None else running.values
+        fixed, remaps = (told.fixed, told.remaps) if told is not None else (frozenset(), ())
+        yield running._replace(objects=own, others=others, values=values, fixed=fixed, remaps=remaps)
         for one in further:
             node = structs.replace(running.node, id=f"{running.node.id}{one.name}", name=one.name)
-            yield running._replace(node=node, objects=one.keys - shared, values=one.values, fixed=one.fixed)
+            yield running._replace(
+                node=node, objects=one.keys - shared, values=one.values, fixed=one.fixed, remaps=one.remaps
+            )
 
     def runs(self, running: Running, use: FrameworkCall, through: Sequence[FrameworkCall] = ()) -> bool:
         """Whether a node runs a use in one of its functions. through: the uses that make what it is called on, where it
@@ -433,6 +447,8 @@ class Join:
             values = running.evaluate(written, candidate.fn, candidate.call.line)
             # `_` stands for a name that options give.
             found = next((value.text for value in values if value.text and value.text != "_"), "")
+            given = self.objects.find_own_name(candidate, running)
+            found = found if given is None else given
             if use is None or found:
                 name, use = found or "", candidate
             if found and "{" not in found:
@@ -447,6 +463,8 @@ class Join:
             written = self.calls.find_argument(use, use.row.topic)
             if written is not None and written.kind != "text" and not self.calls.is_node(written, use.fn):
                 default = _spell_open(written)  # what the code gives is not known
+        if use is not None and name and self._is_anonymous(use, running):
+            name += make_open_part("_<anonymous>")
         full = "" if unknown else normalise("/" + (name or default).lstrip("/"))
         if use is not None and full:
             full = self.objects.join_namespace(use, full.lstrip("/"), running)
@@ -457,6 +475,16 @@ class Join:
             program.line,
         )  # fmt: skip
         return node, use
+
+    def _is_anonymous(self, use: FrameworkCall, running: FlowValues) -> bool:
+        """Whether the name that a use gives may end in what is made up at every start of the program. running: what
+        expressions are worth in it."""
+        asked = self.calls.find_argument(use, use.row.anonymous) if use.row.anonymous else None
+        if asked is None:
+            return False
+        if use.fn.source.facts.language == "cpp":
+            return "AnonymousName" in unparse(asked)
+        return any(value.text != "False" for value in running.evaluate(asked, use.fn, use.call.line))
 
     def _list_plugin_names(self, plugin: str, named: list[FrameworkCall]) -> list[FrameworkCall]:
         """The uses that name the nodes of the class of a plugin, its own before those of its bases."""
@@ -704,11 +732,11 @@ class Join:
             if (is_shared or one.functions is owner.functions) and values.is_same(rests):
                 return found
         # What code that the node does not run passes to its functions is none of its names.
-        names, rests = values.record(lambda: self.sites.list_names(site.use, site.prefix, values))
+        (prefix, names), rests = values.record(lambda: self.sites.find_names(site.use, values))
         beside: list[Work] = []
         if all(name.text is None for name in names) and any(name.unpassed for name in names):
             # It comes from code that the node does not run, as far as is known.
-            elsewhere, work = owner.values.record(lambda: self.sites.list_names(site.use, site.prefix, owner.values))
+            (_, elsewhere), work = owner.values.record(lambda: self.sites.find_names(site.use, owner.values))
             beside.append(work)
             names = tuple(
                 name if name.text is None else name._replace(only_if=_join_conditions(name.only_if, _PASSED))
@@ -720,7 +748,7 @@ class Join:
             beside.append(work)
         for work in beside:
             rests.note_given(work)
-        found = site._replace(names=names, type=type_)
+        found = site._replace(names=names, prefix=prefix, type=type_)
         known.append((owner, not beside, rests, found))
         return found
 
@@ -789,9 +817,9 @@ class Join:
         one = generation == 1
         try:
             if one:
-                text = text.replace("{node}", full).replace("{ns}", namespace or "/")
-                if site.prefix and text[:1] not in ("/", "~"):
+                if site.prefix and text[:1] not in ("/", "~", "{"):
                     text = f"~{text}" if site.prefix == "~" else f"{site.prefix}/{text}"
+                text = text.replace("{node}", full).replace("{ns}", namespace or "/")
                 plain = name = resolve_ros1_name(text, full)
                 if loaded is not None:
                     plain = name = loaded.remap_name(text)
@@ -802,7 +830,13 @@ class Join:
                 text = _make_code_name(site, text)
                 plain = resolve_ros2_name(text, own, namespace or "/")
                 kind = "topic" if site.role in ("publisher", "subscriber") else "service"
-                name = plain if instance is None else instance.remap_name(text, 2, kind)
+                rules = owner.remaps if isinstance(owner, Running) else ()
+                name = remap_ros2_name(text, own, namespace or "/", rules, kind) if rules else plain
+                # Those of the node itself come before those that a launch gives.
+                if instance is not None and name == plain:
+                    name = instance.remap_name(text, 2, kind)
+                elif name != plain:
+                    plain = name
         except NameRefused as error:
             return "", "unresolved", str(error)
         if is_open(name) or value.how == "partly":
@@ -935,6 +969,8 @@ def _keep_fixed(
 ) -> tuple[Started, str]:  # fmt: skip
     """A start without what the options of the node give it all the same, and its namespace in the code. around: the
     namespace that the launch gives the program."""
+    if "all" in fixed:
+        start = _strip_given(start)
     if "name" in fixed:
         start = start._replace(name=EMPTY)
     if "namespace" in fixed:
@@ -961,8 +997,9 @@ def _make_code_name(site: Site, text: str) -> str:
     """The name that an endpoint's code gives to ROS: private where its node handle is."""
     if text.startswith("~") and not text.startswith("~/") and len(text) > 1:
         return f"~/{text[1:]}"
-    private = site.prefix == "~" and text and text[0] not in "/~"
-    return f"~/{text}" if private else text
+    if not site.prefix or not text or text[0] in "/~{":
+        return text
+    return f"~/{text}" if site.prefix == "~" else f"{site.prefix.rstrip('/')}/{text}"
 
 
 def _join_conditions(*conditions: str) -> str:

@@ -110,7 +110,8 @@ class LaunchedNode(msgspec.Struct, frozen=True):
 class Launch(msgspec.Struct, frozen=True):
     """What a launch file starts. path: in the workspace. graph: of all that it starts. missing: it starts programs too
     whose code is not in the workspace, or that are not known, or it includes what is not followed; elsewhere: the
-    lines, as `path:line`, of the remappings and parameters that those programs are given. possible: the graph of what
+    lines, as `path:line`, of the remappings and parameters that those programs are given, and told: the texts of these
+    and of their arguments. possible: the graph of what
     it starts only if conditions hold that do not with the defaults of its arguments, of programs that no launch file
     starts with these; None for nothing."""
 
@@ -120,6 +121,7 @@ class Launch(msgspec.Struct, frozen=True):
     missing: bool
     elsewhere: tuple[str, ...] = ()
     possible: Graph | None = None
+    told: tuple[str, ...] = ()
 
 
 _Followed = tuple[str, Launched]
@@ -200,7 +202,22 @@ def _start(workspace: Workspace, join: Join, followed: Sequence[_Followed]) -> I
             for given in (*started.remaps, *started.settings)
         }
         possible = launch.possible and add_bridges(join.build(launch=launch.possible), launch.possible, sources)
-        yield Launch(path, graph, tuple(starts), bool(others or missing), tuple(sorted(elsewhere)), possible)
+        told = sorted({text for one in (*others, *launch.outside) for text in _list_told(one)})
+        yield Launch(
+            path, graph, tuple(starts), bool(others or missing), tuple(sorted(elsewhere)), possible, tuple(told)
+        )
+
+
+def _list_told(started: Started) -> Iterator[str]:
+    """What a program is told by its arguments, remappings and parameters, those of its parameter files included."""
+    yield from (argument.shown for argument in started.arguments)
+    for remap in started.remaps:
+        yield from (remap.old.shown, remap.new.shown)
+    for setting in started.settings:
+        if isinstance(setting, SettingFile):
+            yield from (str(entry.value) for entry in setting.entries or ())
+        else:
+            yield setting.text.shown
 
 
 def _follow(workspace: Workspace, files: Sequence[tuple[str, str, str]]) -> list[_Followed]:
@@ -431,7 +448,8 @@ def _list_names(join: Join, one: Running, instance: Instance) -> Iterator[str]:
         if site.use.fn in one.functions and join.runs(one, site.use):
             values = site.names
             if not site.implied:
-                values = join.sites.list_names(site.use, site.prefix, one.values)
+                prefix, values = join.sites.find_names(site.use, one.values)
+                site = site._replace(prefix=prefix)
             for value in values:
                 yield join.resolve_name(site, value, bare)[0]
 
@@ -446,7 +464,7 @@ def _collect_parameters(join: Join, one: Running, instance: Instance) -> set[str
             if instance.started.generation != 1:
                 found |= names
                 continue
-            prefix = LOST if one.loaded is not None else join.sites.find_prefix(use)
+            prefix = LOST if one.loaded is not None else join.sites.find_prefix(use, one.values)
             found.update(_resolve_parameter(name, prefix, instance) for name in names)
     return found
 

@@ -19,8 +19,10 @@ from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number
 from .conditions import ConditionReader, DecidedCondition, is_truth
-from .elements import Elements, ListElement
+from .elements import SETTING, Elements, ListElement
+from .given_lists import GivenLists
 from .graph import How
+from .literals import spell_number
 from .names import is_open, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
 from .reaching import LOOPS, FlowValue, ReachingValues
@@ -33,6 +35,8 @@ NODE, NAMESPACE = "{node}", "{ns}"
 LOST = "?"
 """Begins the namespace of a node handle that is not known."""
 _MOST = 12
+# Of loops whose turns are looked at one by one.
+_MOST_TURNS = 64
 _DEEPEST = 12
 _FAR = 6
 # Up to here it is asked of each value whether its branch is come to.
@@ -71,6 +75,7 @@ _NODE_NAME = frozenset(("get_name", "getName", "get_fully_qualified_name"))
 _NODE_NAMESPACE = frozenset(("get_namespace", "getNamespace"))
 
 
+_NOT_SET = FlowValue(None, "given", "a parameter that the launch does not set")
 _NOT_GIVEN = FlowValue(None, "given", "an argument of the command line that is not given")
 
 
@@ -86,12 +91,13 @@ class Work:
     particular makes; makers: who makes the others; made: all of these; is_open: whether a launch gives anything. Where
     nothing asked, made and what is true or false are None, and arguments is UNASKED. higher, lower: by how much the
     number of things that are being evaluated could be larger or smaller without another answer of those that ask for
-    it. is_alone: whether nothing else had a part in it that may be otherwise another time. way: that of whoever works
-    it out."""
+    it. walks: the loops of which something is an element, with the number of their turns; crossed: those of them that
+    several parts of one text are elements of; below: the settings below a prefix that were asked for. is_alone: whether
+    nothing else had a part in it that may be otherwise another time. way: that of whoever works it out."""
 
     __slots__ = (
-        "arguments", "free", "higher", "idle", "is_alone", "is_limited", "is_open", "items", "lines", "lower", "made",
-        "makers", "runs", "settings", "unmade", "way", "ways",
+        "arguments", "below", "crossed", "free", "higher", "idle", "is_alone", "is_limited", "is_open", "items",
+        "lines", "lower", "made", "makers", "runs", "settings", "unmade", "walks", "way", "ways",
     )  # fmt: skip
 
     def __init__(self, way: Mapping[Fn, FlowCall]):
@@ -99,6 +105,9 @@ class Work:
         self.items: set[tuple] = set()
         self.lines: set[tuple[Fn, int]] = set()
         self.settings: dict[str, FlowValue | None] = {}
+        self.below: dict[str, dict[str, str]] = {}
+        self.walks: dict[tuple, int] = {}
+        self.crossed: set[tuple] = set()
         self.runs: set[Fn] = set()
         self.idle: set[Fn] = set()
         self.free: set[Fn] = set()
@@ -129,6 +138,9 @@ class Work:
         if other.is_limited is not None:
             self.is_limited = other.is_limited
         self.note_given(other)
+        self.crossed |= other.crossed
+        for loop, count in other.walks.items():
+            self.walks[loop] = max(count, self.walks.get(loop, 0))
         if other.higher - further < self.higher:
             self.higher = other.higher - further
         if other.lower + further < self.lower:
@@ -137,6 +149,7 @@ class Work:
     def note_given(self, other: Work) -> None:
         """Notes of what something else rests on what a launch gives."""
         self.settings.update(other.settings)
+        self.below.update(other.below)
         if other.arguments is not UNASKED:
             self.arguments = other.arguments
         if other.is_open is not None:
@@ -198,10 +211,11 @@ class FlowValues:
         self.settings, self.arguments, self.way, self.within = settings or {}, arguments, way or {}, within
         self.node, self.made = node, made or {}
         # The namespace of the node handle that a use is called on, and what is known of that, by the call.
-        self.find_prefix: Callable[[FrameworkCall], str] = lambda use: ""
+        self.find_prefix: Callable[[FrameworkCall, FlowValues], str] = lambda use, values: ""
         # The value of a message's constant by its path, where it is a string.
         self.find_message_text: Callable[[str, Fn], str | None] = lambda path, fn: None
         self._prefixes: dict[int, str] = {}
+        self._asked_prefixes: set[int] = set()
         self._left = _MOST_STEPS
         self._budget = [_STEPS_IN_ALL + _STEPS_A_FUNCTION * len(self.code.functions)]
         # Decided guards, each with what it rests on.
@@ -213,6 +227,8 @@ class FlowValues:
         # Values of variables, by all that does not show in what they rest on; and what is being worked out.
         self._known: dict[tuple, list[_Known]] = {}
         self._works: list[Work] = []
+        # Which turn of a loop is looked at.
+        self._turns: dict[tuple, int] = {}
 
     def apply_launch(
         self, settings: Mapping[str, str], arguments: tuple[str, ...] | None = None, node: str = ""
@@ -246,7 +262,9 @@ class FlowValues:
             other.__dict__[name] = getattr(self, name)
         other._budget, other._decided = self._budget, self._decided
         other._known, other._works, other._asking = self._known, self._works, self._asking
+        other._turns = self._turns
         other.find_prefix, other._prefixes = self.find_prefix, self._prefixes
+        other._asked_prefixes = self._asked_prefixes
         other.find_message_text = self.find_message_text
         return other
 
@@ -270,9 +288,50 @@ class FlowValues:
         """The same with all that is not known."""
         most = _MOST_STEPS if self._budget[0] > 0 else _FEW_STEPS
         self._left = most
-        found = list(dict.fromkeys(self._evaluate(value, fn, line, ())))
+        outer = dict(self._turns)
+        self._turns.clear()
+        try:
+            found, work = self.record(lambda: list(dict.fromkeys(self._evaluate(value, fn, line, ()))))
+            if work.crossed:
+                found = list(dict.fromkeys(self._list_by_turn(work, value, fn, line)))
+        finally:
+            self._turns.update(outer)
         self._budget[0] -= most - max(self._left, 0)
         return found
+
+    def _list_by_turn(self, work: Work, value: FlowExpr | None, fn: Fn, line: int) -> Iterator[FlowValue]:
+        """The same where several parts of a text are of one turn of a loop each."""
+        loops = sorted(work.crossed, key=str)
+        turns = product(*(range(work.walks[loop]) for loop in loops))
+        for row in islice(turns, _MOST_TURNS):
+            self._turns.update(zip(loops, row, strict=True))
+            try:
+                found = list(self._evaluate(value, fn, line, ()))
+            finally:
+                self._turns.clear()
+            yield from found
+        if next(turns, None) is not None:
+            yield FlowValue(None, "unresolved", "a loop of too many turns", beside=True)
+
+    def take_turn(self, loop: tuple, found: list[ListElement]) -> list[ListElement]:
+        """Of the elements that a loop goes through those of the turn that is looked at."""
+        if self._works and len(found) > 1:
+            walks = self._works[-1].walks
+            walks[loop] = max(len(found), walks.get(loop, 0))
+        turn = self._turns.get(loop)
+        return found if turn is None else found[turn : turn + 1]
+
+    def _note_crossed(self, parts: Iterable[Work]) -> None:
+        """Notes the loops that several parts of a text are elements of. parts: what each of them rests on."""
+        loops = [loop for part in parts for loop in part.walks]
+        if self._works:
+            self._works[-1].crossed.update(loop for loop in loops if loops.count(loop) > 1)
+
+    def _record_parts(self, parts: Iterable[FlowExpr], fn: Fn, line: int, seen: tuple) -> list[list[FlowValue]]:
+        """The first values of each part of a text."""
+        rows = [self.record(lambda part=part: _take_first(self._evaluate(part, fn, line, seen))) for part in parts]
+        self._note_crossed(rests for found, rests in rows if len(found) > 1)
+        return [found for found, _ in rows]
 
     def _evaluate(self, value: FlowExpr | None, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         if value is None:
@@ -288,8 +347,12 @@ class FlowValues:
         if kind == "number" and value.text[:1] == "'":
             one = _read_character(value.text)
             yield FlowValue(one) if one else FlowValue(None, "unresolved", f"`{value.text}` is not followed")
-        elif kind in ("text", "number"):
+        elif kind == "number":
+            yield FlowValue(spell_number(value.text, fn.source.facts.language == "cpp"))
+        elif kind == "text":
             yield FlowValue(value.text)
+        elif kind == SETTING:
+            yield FlowValue(value.text, "launch")
         elif kind == "name":
             yield from self._evaluate_name(value.text, fn, line, seen)
         elif kind == "join":
@@ -333,7 +396,7 @@ class FlowValues:
             yield one if sure or one.how not in ("literal", "given") else one._replace(how="default")
 
     def _evaluate_join(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
-        pieces = [_take_first(self._evaluate(part, fn, line, seen)) for part in value.parts]
+        pieces = self._record_parts(value.parts, fn, line, seen)
         plain = value.text in ("+", "/", "%") and not any(map(_is_string, value.parts))
         for row in islice(product(*pieces), _MOST):
             # Numbers are added; of what may be either, it is not known.
@@ -463,7 +526,7 @@ class FlowValues:
     @cached_property
     def elements(self) -> Elements:
         """What lists and dictionaries of the code hold."""
-        return Elements(self.code, self._runs, self.way, self.made)
+        return Elements(self.code, self.runs, self.way, self.made, GivenLists(self).find, self.take_turn)
 
     def _evaluate_chosen(
         self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
@@ -655,7 +718,7 @@ class FlowValues:
         into before has no more of what its object was made with."""
         key = (variable, fn, origins, line, filled_before, bool(self.node))
         rows = self._known.setdefault(key, [])
-        for known in rows:
+        for known in rows if not self._turns else ():
             if self._holds_again(known, seen):
                 self._left -= known.steps
                 if self._works:
@@ -668,7 +731,7 @@ class FlowValues:
         )
         if self._works:
             self._works[-1].is_alone &= work.is_alone
-        if work.is_alone and self._left >= 0:
+        if work.is_alone and self._left >= 0 and not self._turns:
             within, asking = frozenset(work.items.intersection(seen)), _list_asking(seen, work.lines)
             rows.append(_Known(values, work, within, asking, len(seen), before - self._left))
             del rows[:-_MOST_KNOWN]
@@ -698,6 +761,7 @@ class FlowValues:
             and (not rests.makers or all(made.get(fn) == rows for fn, rows in rests.makers.items()))
             and (rests.made is None or rests.made is made)
             and (rests.arguments is UNASKED or rests.arguments == self.arguments)
+            and all(self.list_settings_below(prefix) == given for prefix, given in rests.below.items())
             and (not rests.settings or all(self.find_setting(name) == v for name, v in rests.settings.items()))
         )
 
@@ -745,7 +809,7 @@ class FlowValues:
             written = [(w, each) for w, each in written if self.origins.may_be_of(each.target, w, origins)]
         if variable.kind == "member":
             # What another program writes into its own object, unless nothing that runs writes it.
-            written = [(w, each) for w, each in written if self._runs(w)] or written
+            written = [(w, each) for w, each in written if self.runs(w)] or written
         rows, given = self._select_given(written)
         own = [each for writer, each in rows if writer is fn and line]
         around = fn.list_guards_around(self._find_guard_of(fn, line, seen)) if line else ()
@@ -875,7 +939,7 @@ class FlowValues:
             # What a parameter that surely has a value is read into is worth nothing else any more.
             if any(each.line < use.call.line and each.guard == use.call.guard for use in sure):
                 continue
-            if self._decide_branch(each.guard, writer, seen).holds is not False and found.may_run(each.guard):
+            if self.decide_branch(each.guard, writer, seen).holds is not False and found.may_run(each.guard):
                 tested = found.exclude(each.guard) or tested
                 found.add(_mark_unknown(self._evaluate_written(each, writer, origins, seen)), each.guard)
         return found.list_values() if tested else _restore_alone(found.list_values())
@@ -884,7 +948,7 @@ class FlowValues:
         self, each: Assignment, fn: Fn, found: ReachingValues, origins: Origins | None, seen: tuple
     ) -> None:  # fmt: skip
         """Goes on with an assignment in the function that reads the variable later."""
-        branch = self._decide_branch(each.guard, fn, seen)
+        branch = self.decide_branch(each.guard, fn, seen)
         if branch.holds is False or not found.may_run(each.guard):
             return
         # What the launch opens surely runs.
@@ -901,7 +965,7 @@ class FlowValues:
         else:
             found.add(values, guard)
 
-    def _decide_branch(self, guard: int, fn: Fn, seen: tuple) -> DecidedCondition:
+    def decide_branch(self, guard: int, fn: Fn, seen: tuple = ()) -> DecidedCondition:
         """Whether a place in a function is come to, as far as the launch decides it by parameters, or by how many
         arguments it gives; holds is None for all else, and for what is asked for by the way."""
         if guard < 0 or not self._find_asking(fn, guard):
@@ -1041,7 +1105,7 @@ class FlowValues:
         calls = ((caller, call.arguments, call.line) for caller, call in self.code.callers.get(fn, ())
                  if only is None or call is only)  # fmt: skip
         for caller, arguments, line in self.made.get(fn) or (*calls, *self.code.list_constructed(fn)):
-            if self._runs(caller):
+            if self.runs(caller):
                 argument = find_argument(arguments, place, parameter.name)
                 given, lacking = given or argument is not None, lacking or argument is None
                 if argument is not None:
@@ -1052,6 +1116,26 @@ class FlowValues:
         elif not given:
             reason = f"an argument of `{fn.name or 'the module'}`, which nothing here calls"
             yield FlowValue(None, "given", reason, uncalled=self.code.is_idle(fn), unpassed=True)
+
+    def list_given(self, fn: Fn, place: int, name: str) -> Iterator[tuple[FlowExpr, Fn, int]]:
+        """What those that run give for a parameter of a function, with who does and at which line."""
+        only = self.way.get(fn)
+        if self._works:
+            self._works[-1].note_way(fn, only)
+            self._works[-1].note_maker(fn, self.made.get(fn))
+        rows = [(caller, call.arguments, call.line) for caller, call in self.code.callers.get(fn, ())
+                if only is None or call is only]  # fmt: skip
+        rows += [(binder, arguments, 0) for binder, arguments in self.code.bound.get(fn, ())]
+        for giver, arguments, line in self.made.get(fn) or (*rows, *self.code.list_constructed(fn)):
+            argument = find_argument(arguments, place, name) if self.runs(giver) else None
+            if argument is not None:
+                yield argument, giver, line
+
+    def is_left_out(self, fn: Fn) -> bool:
+        """Whether a function is a constructor that makes none of the objects which these values are about."""
+        if self._works:
+            self._works[-1].note_maker(fn, self.made.get(fn))
+        return fn in self.made and self._is_made_otherwise(fn)
 
     def _find_given(self, value: FlowExpr, fn: Fn) -> tuple[int, FlowParameter] | None:
         """The parameter of a constructor that a value is, None for all else."""
@@ -1064,12 +1148,13 @@ class FlowValues:
         owner = self.code.find_owner(fn)
         place, facts = parameter
         for maker, arguments, line in self.code.constructions.get(owner.key, ()) if owner is not None else ():
-            if (maker.place, arguments) in origins.made and self._runs(maker):
+            if (maker.place, arguments) in origins.made and self.runs(maker):
                 argument = find_argument(arguments, place, facts.name) or self.code.find_default(fn, place, facts)
                 if argument is not None:
                     yield from self._evaluate(argument, maker, line, seen)
 
-    def _runs(self, fn: Fn) -> bool:
+    def runs(self, fn: Fn) -> bool:
+        """Whether a function runs, as far as it is known which do."""
         runs = self.within is None or fn in self.within
         if self._works:
             (self._works[-1].runs if runs else self._works[-1].idle).add(fn)
@@ -1230,12 +1315,26 @@ class FlowValues:
         """The name of a parameter in the namespace of the node handle that it is asked of."""
         if not self.node or name[:1] in ("/", "~"):
             return name
-        if id(use.call) not in self._prefixes:
-            self._note_others()
-            self._prefixes[id(use.call)] = LOST  # as long as it rests on itself
-            self._prefixes[id(use.call)] = self.find_prefix(use)
-        prefix = self._prefixes[id(use.call)]
+        prefix = self._find_prefix(use)
         return f"~{name}" if prefix == "~" else f"{prefix}/{name}" if prefix else name
+
+    def _find_prefix(self, use: FrameworkCall) -> str:
+        key = id(use.call)
+        if key not in self._prefixes:
+            self._note_others()
+            self._prefixes[key] = LOST  # as long as it rests on itself
+            self._prefixes[key] = self.find_prefix(use, self)
+        if not self._prefixes[key].startswith(LOST) or not (self.way or self.made):
+            return self._prefixes[key]
+        # It may be known of the objects, or the calls, that this is about.
+        self._note_others()
+        if key in self._asked_prefixes:
+            return LOST
+        self._asked_prefixes.add(key)
+        try:
+            return self.find_prefix(use, self)
+        finally:
+            self._asked_prefixes.discard(key)
 
     def find_setting(self, name: str) -> FlowValue | None:
         """What a launch sets a parameter to; None for nothing. name: in the namespace of its node handle."""
@@ -1249,6 +1348,30 @@ class FlowValues:
         else:
             given = None
         return FlowValue(given, "launch") if given is not None else None
+
+    def note_open(self) -> bool:
+        """Whether a launch gives anything, which is noted."""
+        if self._works:
+            self._works[-1].is_open = bool(self.settings or self.arguments)
+        return bool(self.settings)
+
+    def list_settings_below(self, prefix: str) -> dict[str, str]:
+        """What a launch sets below a prefix, by the rest of the name; in ROS 1 by a global prefix."""
+        head = f"{prefix}{'/' if self.node else '.'}"
+        found = {name[len(head) :]: value for name, value in self.settings.items() if name.startswith(head)}
+        if self._works:
+            self._works[-1].below[prefix] = found
+        return found
+
+    def read_server(self, name: str, use: FrameworkCall) -> tuple[str | None, dict[str, str]]:
+        """What the parameter server of ROS 1 has under the name that a use gives a parameter: a value, or what is below
+        it."""
+        setting = self._make_setting_name(name, use)
+        if not self.node or setting.startswith(LOST):
+            return None, {}
+        given = self._find_setting_of(use, name)
+        below = self.list_settings_below(resolve_ros1_name(setting, self.node))
+        return given.text if given is not None else None, below
 
     def _find_parameter_name(self, use: FrameworkCall, seen: tuple) -> str:
         """The name that a use gives a parameter, empty where it is not known."""
@@ -1264,8 +1387,19 @@ class FlowValues:
             self._works[-1].settings[setting] = given
         return given
 
+    def _list_given_names(self, use: FrameworkCall, seen: tuple) -> list[FlowValue]:
+        """The names that a use gives a parameter, where a launch tells them and sets each of these parameters."""
+        written = self.calls.find_argument(use, use.row.topic)
+        found = list(self._evaluate(written, use.fn, use.call.line, seen)) if written is not None else []
+        told = len(found) > 1 and all(one.how == "launch" and one.text for one in found)
+        return [self._find_setting_of(use, one.text or "") or _NOT_SET for one in found] if told else []
+
     def _evaluate_parameter(self, use: FrameworkCall, seen: tuple) -> Iterator[FlowValue]:
         """The default of the parameter that a use declares or reads."""
+        several = self._list_given_names(use, seen)
+        if several:
+            yield from several
+            return
         name = self._find_parameter_name(use, seen)
         given = self._find_setting_of(use, name)
         if given is not None:
@@ -1298,7 +1432,7 @@ class FlowValues:
         """The uses in functions that run, where it is known which do."""
         if self._works:
             self._works[-1].is_limited = self.within is not None
-        return [use for use in uses if self._runs(use.fn)] if self.within is not None else []
+        return [use for use in uses if self.runs(use.fn)] if self.within is not None else []
 
     @cached_property
     def declared(self) -> dict[str, list[FrameworkCall]]:
@@ -1356,7 +1490,7 @@ def _get_key(value: FlowExpr) -> FlowExpr:
 
 def _mentions(value: FlowExpr, path: str) -> bool:
     """Whether an expression has a path in it."""
-    named = value.text == path or value.text.startswith(f"{path}.")
+    named = value.kind != "text" and (value.text == path or value.text.startswith(f"{path}."))
     inner = (*value.parts, *((value.receiver,) if value.receiver is not None else ()))
     return named or any(_mentions(part, path) for part in inner)
 

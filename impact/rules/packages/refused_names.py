@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from ...model.cmake.build import RefusedName
 from ...model.cmake.conditions import make_version_key
-from ..vocabulary import Diagnostic, Package, TargetView, list_place_doubts
+from ..vocabulary import Diagnostic, Package, TargetView, Together, list_place_doubts
 
 # What only code that is not read can mend.
 _HIDDEN = frozenset(("branch", "branch sources", "no sources", "no target", "no value"))
@@ -35,8 +35,10 @@ def find_policy_version(package: Package) -> tuple[int, ...]:
     return make_version_key(upper or lower)
 
 
-def diagnose_refused(view: TargetView, package: Package, kind: str) -> Iterator[Diagnostic]:
-    """What a rule reports that all refused names of one kind are faults for."""
+def diagnose_refused(
+    view: TargetView, package: Package, kind: str, together: tuple[Together, ...] = ()
+) -> Iterator[Diagnostic]:
+    """What a rule reports that all refused names of one kind are faults for. together: what they share."""
     for refused in list_refused(view, package, kind):
         doubts = list_place_doubts(view, "build", refused.conditions)
-        yield Diagnostic(refused.at, refused.name, package.name, doubts=doubts)
+        yield Diagnostic(refused.at, refused.name, package.name, doubts=doubts, together=together)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from ....edges.groups import group_pairs
 from ...facts.flow import DataMember, FlowExpr
 from ...model.fields.topics import extract_uses
 from ...model.flow.code import SOURCES, FlowCode, Fn, get_tail
+from ...model.flow.endpoints import Site
 from ...model.flow.graph import Endpoint, Graph
 from ...model.flow.join import Join
 from ...model.flow.types import Cls, split_name
@@ -34,7 +35,10 @@ class ObservedMember(NamedTuple):
 class CppCallback(NamedTuple):
     """A callback with where it is given to the framework. kind: `subscriber`, `service`, `timer` or `action`, or `main`
     for a program from its start. path, line: of the call that subscribes. site: the function that it stands in.
-    function: the callback's own, None where it is not known. message_type: `package/Name`, empty for a timer."""
+    function: the callback's own, None where it is not known. message_type: `package/Name`, empty for a timer.
+    is_filtered: it comes through a filter of messages; joined: then, or with a camera, the types of all messages that
+    the callback is given, and place: the place of this one; registered: path and line of the call that gives the filter
+    its callback, empty where that is not known."""
 
     kind: str
     path: str
@@ -44,6 +48,10 @@ class CppCallback(NamedTuple):
     message_type: str
     topics: tuple[str, ...]
     nodes: tuple[str, ...]
+    is_filtered: bool = False
+    joined: tuple[str, ...] = ()
+    place: int = 0
+    registered: tuple[str, int] = ("", 0)
 
     @property
     def name(self) -> str:
@@ -86,11 +94,28 @@ def _list_endpoints(
         for callback in site.callbacks or (None,):
             of = [one for one in rows if callback is None or one.callback is None or one.callback.name == callback.name]
             known = [one.type for one in of if "/" in one.type] or [each for each in types if "/" in each]
-            yield CppCallback(
+            found = CppCallback(
                 _KINDS[site.role], path, line, fn, callback, known[0] if known else "",
                 tuple(dict.fromkeys(one.topic for one in of if one.topic)),
                 tuple(dict.fromkeys(one.node for one in of if one.node)),
             )  # fmt: skip
+            yield _join_messages(found, join, site, [one.type for one in of])
+
+
+def _join_messages(callback: CppCallback, join: Join, site: Site, types: Sequence[str]) -> CppCallback:
+    """A callback with what it is given besides, where a synchronizer or a camera gives it several messages. types: of
+    its endpoints at this place."""
+    row = site.use.row
+    if row.camera_info and callback.kind == "subscriber":
+        joined = tuple(dict.fromkeys(types))
+        return callback._replace(joined=joined if len(joined) == 2 and joined[0] == callback.message_type else ())
+    if row.framework != "message_filters":
+        return callback
+    found = join.sites.find_joined(site)
+    if found is None or len(found[0]) < 2:
+        return callback._replace(is_filtered=True)
+    joined, place, registered = found
+    return callback._replace(is_filtered=True, joined=joined, place=place, registered=registered)
 
 
 def _list_timers(join: Join, graph: Graph, language: str) -> Iterator[CppCallback]:

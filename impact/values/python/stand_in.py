@@ -9,6 +9,7 @@ import builtins
 import importlib
 import importlib.abc
 import importlib.machinery
+import inspect
 import json
 import os
 import struct
@@ -422,9 +423,8 @@ def main():
         function = getattr(owner, parts[-1])
     for name, value in TASK["globals"].items():
         setattr(module, name, decode(value))
-    if TASK["has_message"]:
-        given.append(decode(TASK["message"]))
-    given.extend(_Stub(f"argument {index}") for index in range(TASK["others"]))
+    given.extend(decode(one) for one in TASK["messages"])
+    given.extend(_Stub(name) for name in list_others(function, len(given)))
     EVENTS.clear()
     held = [vars(one) for one in (*OWNER[:1], module)]
     before = [dict(one) for one in held]
@@ -441,6 +441,16 @@ def main():
                 note("member", name)
     result["events"] = EVENTS
     real.write(json.dumps(result))
+
+
+def list_others(function, given):
+    """The names of further arguments that a callback has to be given (`callback_args`)."""
+    try:
+        parameters = list(inspect.signature(function).parameters.values())
+    except (TypeError, ValueError):
+        return []
+    wanted = [one for one in parameters if one.kind in (one.POSITIONAL_ONLY, one.POSITIONAL_OR_KEYWORD)]
+    return [one.name for one in wanted[given:] if one.default is one.empty]
 
 
 def is_plain(name, value):

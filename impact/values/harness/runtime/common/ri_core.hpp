@@ -455,6 +455,8 @@ inline const char *wanted_kind = nullptr;
 inline const char *wanted_file = nullptr;
 inline int wanted_line = 0;
 inline int wanted_nth = 0;
+// Of several messages that a callback is given, the one that is asked about: it is `msg`, the others `msg2` and so on.
+inline int wanted_place = 0;
 // What comes right before it runs: state is made symbolic and watched.
 inline void (*prepare)(void *) = nullptr;
 inline void *prepare_with = nullptr;
