@@ -13,7 +13,8 @@ with the most memory that the run on its workspace took, in MB.
 A crash that the reader has not got is judged by hand afterwards: `true` in NAME.verdicts.jsonl (repo, path, line, kind)
 
 usage: value_sight.py draw --set NAME --clones FOLDER [--number 6] [--seed 20]
-       value_sight.py score --set NAME --clones FOLDER --work FOLDER [--replay] [--seconds 20] [--compiling 60] [--resume]
+       value_sight.py score --set NAME --clones FOLDER --work FOLDER [--replay] [--seconds 20] [--compiling 60]
+                     [--resume]
 """
 
 from __future__ import annotations
@@ -103,7 +104,8 @@ def describe(answer: CallbackAnswer) -> dict:
             for one in answer.examples
             if one.crash is not None
         ],
-        "unknown": list(answer.unknown)[:5], "seconds": round(answer.seconds, 2), "compiled_in": round(answer.compiled_in, 1), "rounds": answer.rounds,
+        "unknown": list(answer.unknown)[:5], "seconds": round(answer.seconds, 2),
+        "compiled_in": round(answer.compiled_in, 1), "rounds": answer.rounds,
     }  # fmt: skip
 
 
