@@ -22,6 +22,8 @@ MESSAGES = {
     "std_msgs/Float64": "float64 data\n",
     "std_msgs/Header": "uint32 seq\ntime stamp\nstring frame_id\n",
     "geometry_msgs/Vector3": "float64 x\nfloat64 y\nfloat64 z\n",
+    "geometry_msgs/Quaternion": "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n",
+    "lamp_msgs/Stamped": "builtin_interfaces/Time stamp\n",
     "geometry_msgs/Twist": "Vector3 linear\nVector3 angular\n",
     "geometry_msgs/PointStamped": "std_msgs/Header header\nVector3 point\n",
     "sensor_msgs/LaserScan": "float32 range_min\nfloat32 range_max\nfloat32[] ranges\n",
@@ -84,10 +86,10 @@ def explore(body, message, tmp_path, bounds=None):
     )
 
 
-def explore_text(text, name, message, tmp_path, bounds=None, joined=(), place_of_message=0):
+def explore_text(text, name, message, tmp_path, bounds=None, joined=(), place_of_message=0, ros=1):
     (tmp_path / "driver.py").write_text(text)
     sections = {name: extract(found.encode(), "msg").sections[0] for name, found in MESSAGES.items()}
-    messages = Messages(sections.get, 1)
+    messages = Messages(sections.get, ros)
     module = ModuleCode("driver", "driver.py", ast.parse(text))
     code = CallbackCode(module, name, 0, message, joined, place_of_message)
     found = explore_callback(code, messages, lambda name: None, bounds or Bounds(text=5))
@@ -548,3 +550,72 @@ def test_further_arguments_of_a_callback_are_given_in_a_replay(tmp_path):
     text = HEAD + "    def callback(self, msg, what, more=3):\n        self.pub.publish(Int32(msg.data))\n"
     _, seen = explore_text(text, "Driver.callback", "std_msgs/Int32", tmp_path)
     assert seen == {(Reaction.HANDLED, None): True}
+
+
+TURNED = """
+import rospy
+from std_msgs.msg import Float64
+from geometry_msgs.msg import Quaternion
+from tf.transformations import euler_from_quaternion, quaternion_from_euler, quaternion_matrix
+pub = rospy.Publisher("yaw", Float64, queue_size=1)
+
+
+def by_numbers(msg):
+    roll, pitch, yaw = euler_from_quaternion([msg.x, msg.y, msg.z, msg.w])
+    x, y, z, w = quaternion_from_euler(0, 0, yaw)
+    rotation = quaternion_matrix([x, y, z, w])
+    pub.publish(Float64(yaw + w + rotation[3][3]))
+
+
+def by_message(msg):
+    pub.publish(Float64(euler_from_quaternion(msg)[2]))
+
+
+def beyond_half_a_turn(msg):
+    if euler_from_quaternion([msg.x, msg.y, msg.z, msg.w])[2] > 3.2:
+        pub.publish(Float64(1.0))
+"""
+
+
+@pytest.mark.parametrize(
+    "name, expected",
+    [
+        ("by_numbers", {(Reaction.HANDLED, None): True}),
+        ("by_message", {(Reaction.CRASH, CrashKind.EXCEPTION): True}),
+        ("beyond_half_a_turn", {(Reaction.IGNORED, None): True}),
+    ],
+)
+def test_rotations(tmp_path, name, expected):
+    _, seen = explore_text(TURNED, name, "geometry_msgs/Quaternion", tmp_path)
+    assert seen == expected
+
+
+MOMENTS = """
+from rclpy.node import Node
+from rclpy.time import Time
+from rclpy.duration import Duration
+
+
+class Driver(Node):
+    def __init__(self):
+        super().__init__("driver")
+
+    def of_time(self, msg):
+        moment = Time.from_msg(msg.stamp)
+        self.get_logger().info(f"{(self.get_clock().now() - moment).nanoseconds}")
+
+    def of_duration(self, msg):
+        self.get_logger().info(f"{Duration.from_msg(msg.stamp).nanoseconds}")
+"""
+
+
+@pytest.mark.parametrize(
+    "name, expected",
+    [
+        ("of_time", {(Reaction.CRASH, CrashKind.EXCEPTION): True, (Reaction.LOG_ONLY, None): True}),
+        ("of_duration", {(Reaction.LOG_ONLY, None): True}),
+    ],
+)
+def test_moments_of_messages(tmp_path, name, expected):
+    _, seen = explore_text(MOMENTS, f"Driver.{name}", "lamp_msgs/Stamped", tmp_path, ros=2)
+    assert seen == expected

@@ -385,7 +385,10 @@ def _write_state(members: Sequence[ObservedMember], object_: str, prefix: str, e
         name = each.name
         make = "true" if every else "false"
         lines.append(f'  ri::name_member({object_}{name}, "{get_tail(name)}", {make});')
-        if each.is_state:
+        if each.is_state and each.least is not None and not every:
+            # What the constructor leaves is the least value, too.
+            lines.append(f'  ri::fill_rising({object_}{name}, "{prefix}{get_tail(name)}", {each.least});')
+        elif each.is_state:
             lines.append(f'  ri::fill_state({object_}{name}, "{prefix}{get_tail(name)}");')
     lines += [f'  ri::watch_member({object_}{e.name}, "{get_tail(e.name)}");' for e in members if e.is_read]
     return lines
