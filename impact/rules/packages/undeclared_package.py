@@ -21,11 +21,11 @@ Severity
     along. In ROS 2 also what a program in Python imports, or an installed launch file starts, in any case, and no
     package of the workspace brings. warning: environment variables, tests of ROS 1, other imports and launch files,
     settings, the tool of the build type, installed headers that nothing here compiles, or where a dependency is known
-    nowhere and may bring it (a package named like an interface package may provide interfaces). note: conditional
-    code, examples (installed ones too, in what they import and start), documentation, files that nothing compiles, and
-    all but the first of more than five imports, of several in tests, or of more than five packages that launch files
-    start, which a package does not declare; further packages that lack the same, and in ROS 1 all but the first of
-    these in the workspace.
+    nowhere and may bring it (a package named like an interface package may provide interfaces). note: conditional code,
+    examples (installed ones too, in what they import and start), documentation, files that nothing compiles, or is
+    known to install, and all but the first of more than five imports, of several in tests, or of more than five
+    packages that launch files start, which a package does not declare; further packages that lack the same, and in ROS
+    1 all but the first of these in the workspace.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
