@@ -12,7 +12,7 @@ from ...model.package import find_folder_role, is_called_example
 from ..vocabulary import Doubt, Need, Package, TargetView
 from .data_files import list_copied
 from .dependants import list_compiled_elsewhere
-from .install_rules import is_installed, may_stay_behind, read_installs
+from .install_rules import LAUNCH_FILE, is_installed, may_stay_behind, read_installs
 
 ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program", "environment"))
 """How CMake asks for something, so that the configuration stops without it."""
@@ -129,7 +129,8 @@ def _is_reached(view: TargetView, package: Package, need: Need) -> bool:
     if need.how == "launch":
         installs = read_installs(view, package)
         installs = list_copied(package) if installs is None else installs
-        return "launch" in posixpath.basename(path) and bool(installs) and is_installed(installs, path)
+        installed = is_installed(installs or (), path) and not may_stay_behind(view, package, path)
+        return installed and LAUNCH_FILE.search(path) is not None
     if need.how != "import":
         return False
     return path in package.linked.scripts or any(
