@@ -12,7 +12,7 @@ from ...model.package import find_folder_role, is_called_example
 from ..vocabulary import Doubt, Need, Package, TargetView
 from .data_files import list_copied
 from .dependants import list_compiled_elsewhere
-from .install_rules import is_installed, may_stay_behind, read_installs
+from .install_rules import LAUNCH_FILE, is_installed, may_stay_behind, read_installs
 
 ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program", "environment"))
 """How CMake asks for something, so that the configuration stops without it."""
@@ -94,6 +94,8 @@ def _collect_run_time_doubts(view: TargetView, package: Package, need: Need, nam
     and who wants both has it; who tries an example out sees what it lacks."""
     if is_called_example(need.at.path):
         return (Doubt.EXAMPLE,)
+    if need.how == "import" and need.role == "run" and may_stay_behind(view, package, need.at.path):
+        return (Doubt.UNINSTALLED,)
     # A launch file that is called like a test, and does not lie among tests, may be started by hand.
     folder = package.strip_path(need.at.path).rpartition("/")[0]
     by_hand = need.role == "run" or (need.role == "test" and find_folder_role(f"{folder}/") is None)
@@ -127,8 +129,9 @@ def _is_reached(view: TargetView, package: Package, need: Need) -> bool:
     if need.how == "launch":
         installs = read_installs(view, package)
         installs = list_copied(package) if installs is None else installs
-        return "launch" in posixpath.basename(path) and bool(installs) and is_installed(installs, path)
-    if need.how != "import" or may_stay_behind(view, package, path):
+        installed = is_installed(installs or (), path) and not may_stay_behind(view, package, path)
+        return installed and LAUNCH_FILE.search(path) is not None
+    if need.how != "import":
         return False
     return path in package.linked.scripts or any(
         path in file.list_module_paths(posixpath.dirname(setup), module)

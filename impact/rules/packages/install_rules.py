@@ -1,12 +1,16 @@
 """The install rules of packages, as the rules on them ask for it."""
 
 import posixpath
+import re
 from collections.abc import Iterable, Iterator
 
 from ....edges.memory import cache_in_derived
 from ...model.cmake.build import Install
 from ...model.cmake.installed import lets_in, list_copied_files
 from ..vocabulary import At, Package, TargetView
+
+LAUNCH_FILE = re.compile(r"[._]launch\.(?:py|xml|ya?ml)\Z")
+"""Launch files of ROS 2, which `ros2 launch` finds in the share folder alone."""
 
 
 def read_installs(view: TargetView, package: Package) -> list[Install] | None:
