@@ -549,7 +549,7 @@ def _read_result(answer: CallbackAnswer, result: Evaluated | Died, root: Path) -
     return replace(
         answer, counts=result.counts, fields=result.fields, examples=examples, sent=sent,
         unknown=result.unknown, assumed=result.assumed, left=result.left, seconds=result.seconds,
-        is_bare=result.is_bare,
+        is_bare=result.is_bare, beyond=result.beyond,
     )  # fmt: skip
 
 

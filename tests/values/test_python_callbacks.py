@@ -7,6 +7,7 @@ from collections import Counter
 import pytest
 import z3
 from rosimpact.impact.facts.interface import extract
+from rosimpact.impact.values.evaluate import evaluate
 from rosimpact.impact.values.harness.replay import is_confirmed
 from rosimpact.impact.values.outcomes import Bounds, CrashKind, Reaction, Witness
 from rosimpact.impact.values.python.explore import CallbackCode, explore_callback
@@ -672,3 +673,23 @@ def test_services(tmp_path, text, ros, others, sent):
     assert {one.publisher for path in found.paths for one in path.sent} == sent
     replies = [path for path in found.paths if ("reply", "response") in {(one.kind, one.name) for one in path.effects}]
     assert replies and all(path.result is Reaction.HANDLED for path in replies)
+
+
+@pytest.mark.parametrize(
+    "lines, beyond",
+    [
+        ("if len(msg.ranges) > 10: self.pub.publish(Int32(1))", ("ranges",)),
+        ("self.pub.publish(Int32(len(msg.ranges[9:])))", ()),
+        ("self.last = msg.ranges[5]", ("ranges",)),
+        ("self.last = msg.ranges[3]", ("ranges",)),
+        ("self.last = msg.ranges[1]", ()),
+        ("for one in msg.ranges: self.pub.publish(Int32(1))", ()),
+    ],
+)
+def test_larger_arrays_than_were_looked_at(tmp_path, lines, beyond):
+    text = HEAD + f"    def callback(self, msg):\n        {lines}\n"
+    found, _ = explore_text(text, "Driver.callback", "sensor_msgs/LaserScan", tmp_path)
+    assert found.bounds.array == 3
+    said = evaluate(found, {})
+    assert said.beyond == beyond
+    assert not beyond or all(one.ignored is None and one.unhandled is None for one in said.fields)

@@ -74,6 +74,7 @@ def explore_callback(
         if path is not None:
             found.paths.append(path)
     found.left = len(pending)
+    found.exceeded = frozenset(solving.exceeded)
     found.seconds = time.monotonic() - started
     return found
 
