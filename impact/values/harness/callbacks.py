@@ -300,18 +300,25 @@ class ClassReader:
         definitions = tuple(dict.fromkeys(each for one in targets for each in one.definitions if "$" not in each))
         return max(17, standard), definitions
 
-    def list_defining(self, symbols: set[str]) -> list[str]:
-        """The source files whose functions some mangled names may be."""
+    def list_defining(self, symbols: set[str], beside: str) -> list[str]:
+        """The source files whose functions some symbols may be: mangled names of C++, and names of C, which are looked
+        for in the package of a path."""
         found: dict[str, None] = {}
+        package = self.find_package(beside)
         for fn in self.code.functions:
-            if fn.source.facts.language != "cpp" or not fn.name or not fn.source.path.endswith(SOURCES):
+            path = fn.source.path
+            if fn.source.facts.language != "cpp" or not fn.name or not path.endswith(SOURCES):
+                continue
+            if path.endswith(".c"):
+                if fn.name in symbols and self.find_package(path) is package:
+                    found[path] = None
                 continue
             parts = split_name(fn.name)[-2:]
             mark = "".join(f"{len(part)}{part}" for part in parts)
             if len(parts) == 2 and parts[0] == parts[1]:
                 mark = f"{len(parts[0])}{parts[0]}C"
-            if any(mark in symbol for symbol in symbols):
-                found[fn.source.path] = None
+            if any(symbol.startswith("_Z") and mark in symbol for symbol in symbols):
+                found[path] = None
         return list(found)
 
 

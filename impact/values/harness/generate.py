@@ -94,8 +94,12 @@ class HarnessWriter:
     def write_further(self, name: str, source: str) -> SourceUnit:
         """A unit of another source file, whose functions a harness calls."""
         standard, definitions = self.reader.find_standard(source)
+        folders = (f"{self.root}/{source.rpartition('/')[0]}",)
+        if source.endswith(".c"):
+            text = f'#define main ri_main_of_{name}\n#include "{self.root}/{source}"\n'
+            return SourceUnit(name, text, {}, standard, definitions, folders, is_c=True)
         text = f'#include "ri_core.hpp"\n#define main ri_main_of_{name}\n#include "{self.root}/{source}"\n'
-        return SourceUnit(name, text, {}, standard, definitions, (f"{self.root}/{source.rpartition('/')[0]}",))
+        return SourceUnit(name, text, {}, standard, definitions, folders)
 
     # Ways
 

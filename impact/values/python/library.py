@@ -123,7 +123,10 @@ def find_message_type(name: str) -> str:
     if len(parts) >= 3 and parts[1] in ("msg", "srv", "action"):
         if parts[1] == "msg":
             return f"{parts[0]}/{parts[-1]}" if len(parts) <= 4 and parts[-1][:1].isupper() else ""
-        return ""
+        # `SetBoolResponse` of ROS 1, `SetBool.Response` of ROS 2.
+        whole = "".join(parts[2:])
+        is_part = parts[1] == "srv" and len(parts) <= 4 and whole.endswith(("Request", "Response"))
+        return f"{parts[0]}/{whole}" if is_part else ""
     return {
         "rospy.Header": "std_msgs/Header", "rospy.AnyMsg": "",
     }.get(name, "")  # fmt: skip

@@ -842,7 +842,11 @@ class PythonMachine:
         if isinstance(left, Opaque) or isinstance(right, Opaque):
             return Opaque(_describe(left if isinstance(left, Opaque) else right))
         if is_number(left) and is_number(right):
-            return operators.compare(kind, left, right)
+            said = operators.compare(kind, left, right)
+            if isinstance(said, bool):
+                self.run.note_size(left, right)
+                self.run.note_size(right, left)
+            return said
         if isinstance(left, TimeValue) or isinstance(right, TimeValue) or _is_time(left) or _is_time(right):
             return library.compare_moments(self, kind, left, right)
         if kind in (ast.Eq, ast.NotEq):

@@ -364,6 +364,13 @@ class _Parameter:
         raise AttributeError(name)
 
 
+class _Service:
+    """A type of services, with those of its two messages."""
+
+    def __init__(self, name):
+        self.Request, self.Response = find_class(f"{name}Request"), find_class(f"{name}Response")
+
+
 class _StandIn(types.ModuleType):
     """A module that is not there."""
 
@@ -373,6 +380,9 @@ class _StandIn(types.ModuleType):
         parts = self.__name__.split(".")
         if len(parts) > 1 and parts[1] == "msg" and name[:1].isupper():
             return find_class(f"{parts[0]}/{name}")
+        if len(parts) > 1 and parts[1] == "srv" and name[:1].isupper():
+            whole = f"{parts[0]}/{name}"
+            return find_class(whole) if name.endswith(("Request", "Response")) else _Service(whole)
         if name.endswith(("Exception", "Error", "Interrupt")):
             made = type(name, (Exception,), {})
         elif name[:1].isupper() and self.__name__.startswith("rclpy") and name.endswith("Node"):
@@ -467,7 +477,9 @@ def main():
     before = [dict(one) for one in held]
     sizes = [{name: repr(value) for name, value in one.items() if is_plain(name, value)} for one in before]
     try:
-        function(*given)
+        returned = function(*given)
+        if TASK["replies"] and returned is not None:
+            note("reply", "response")
     except BaseException as error:
         result.update(end="raised", exception=type(error).__name__, detail=str(error)[:300], line=find_line(error))
     for names, olds, texts in zip(held, before, sizes, strict=True):
