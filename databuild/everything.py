@@ -210,6 +210,7 @@ STEPS = (
          lambda sources, data, own: _call("databuild.fields", sources.clones, "--output", data / "fields.json.zst")
          if sources.clones else None),
     BuildStep("gazebo-topics", ("gazebo_topics.json.zst",), (), _read_clones("databuild.gazebo_topics")),
+    BuildStep("constants", ("constants.json.zst",), ("manifests",), _read_clones("databuild.constants")),
     BuildStep("gz-systems", ("gz_systems.json.zst",), (), _read_clones("databuild.gz_systems")),
     BuildStep("tree-nodes", ("tree_nodes.json.zst",), ("manifests",), _read_clones("databuild.tree_nodes")),
     BuildStep("conda", ("conda.json.zst",), (), _read_clones("databuild.conda")),

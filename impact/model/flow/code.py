@@ -767,6 +767,10 @@ class FlowCode:
         files = {one.path for _, one in found}
         return found if len(files) < 2 or len({constant.value for constant, _ in found}) == 1 else []
 
+    def list_seen_sources(self, path: str) -> list[CodeFile]:
+        """The C++ files that one sees, itself among them."""
+        return [self._by_path[seen] for seen in sorted(self._seen_files.list_seen(path)) if seen in self._by_path]
+
     def list_definitions(self, name: str) -> list[tuple[DataMember, CodeFile]]:
         """What C++ files define under a full name that another declares: a static member, a variable that is extern."""
         rows = (row for rows in self._constants.get(get_tail(name), {}).values() for row in rows)

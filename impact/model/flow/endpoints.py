@@ -17,6 +17,7 @@ from ....edges.memory import cache_method
 from ...facts.cpp.names import split_at_commas
 from ...facts.flow import FlowCall, FlowExpr
 from ...facts.python.text import join_dotted
+from ...targets.constants import load_constants
 from .calls import Calls, FrameworkCall
 from .code import FlowCode, Fn, Variable, find_parameter, get_outer, get_tail, is_number
 from .contexts import Contexts
@@ -24,6 +25,7 @@ from .defined import DefinedInterfaces
 from .graph import Role
 from .handles import NodeHandles, join_spaces
 from .modules import CodeFile
+from .outside_constants import OutsideConstants
 from .templates import Templates
 from .types import find_header_interface, find_interface, parse_flow_type
 from .values import LOST, FlowValue, FlowValues, make_sibling
@@ -166,7 +168,7 @@ class Sites:
         self.templates = Templates(code)
         self.handles, self.contexts = NodeHandles(calls), Contexts(code)
         values.find_prefix = self.find_prefix
-        values.find_message_text = self.find_message_text
+        values.find_outside_text = self.find_outside_text
 
     @cached_property
     def endpoints(self) -> list[Site]:
@@ -420,17 +422,27 @@ class Sites:
                 return self._resolve_interface(kind.arguments[0], fn)
         return ""
 
-    def find_message_text(self, path: str, fn: Fn) -> str | None:
-        """The value of a message's constant that is a string (`Topics::SCAN`, `Topics.SCAN`), None for all else."""
+    def find_outside_text(self, path: str, fn: Fn) -> str | None:
+        """The value of a constant that is a string: of a message (`Topics::SCAN`, `Topics.SCAN`), or of a released
+        package. None for all else."""
+        told = self._find_message_text(path, fn)
+        return self._released.find(path, fn) if told is None else told
+
+    @cached_property
+    def _released(self) -> OutsideConstants:
+        return OutsideConstants(self.code)
+
+    def _find_message_text(self, path: str, fn: Fn) -> str | None:
         head, _, name = path.replace("::", ".").rpartition(".")
-        if not self.defined.texts or not head or head.startswith("this"):
+        if not head or head.startswith("this"):
             return None
         if fn.source.facts.language == "cpp":
             type_ = head.replace(".", "::")
             known = self._resolve_interface(type_, fn) or self._resolve_in_namespaces(type_, fn)
         else:
             known = self._find_imported_type(head, fn.source) or ""
-        return self.defined.texts.get(known, {}).get(name)
+        texts = self.defined.texts.get(known)
+        return texts.get(name) if texts is not None else load_constants().messages.get(known, {}).get(name)
 
     def _resolve_interface(self, type_: str, fn: Fn) -> str:
         return find_interface(self.code.resolve_written(type_, fn.source, fn.scope).name)

@@ -212,8 +212,8 @@ class FlowValues:
         self.node, self.made = node, made or {}
         # The namespace of the node handle that a use is called on, and what is known of that, by the call.
         self.find_prefix: Callable[[FrameworkCall, FlowValues], str] = lambda use, values: ""
-        # The value of a message's constant by its path, where it is a string.
-        self.find_message_text: Callable[[str, Fn], str | None] = lambda path, fn: None
+        # The value of a constant of a message or a released package by its path, where it is a string.
+        self.find_outside_text: Callable[[str, Fn], str | None] = lambda path, fn: None
         self._prefixes: dict[int, str] = {}
         self._asked_prefixes: set[int] = set()
         self._left = _MOST_STEPS
@@ -265,7 +265,7 @@ class FlowValues:
         other._turns = self._turns
         other.find_prefix, other._prefixes = self.find_prefix, self._prefixes
         other._asked_prefixes = self._asked_prefixes
-        other.find_message_text = self.find_message_text
+        other.find_outside_text = self.find_outside_text
         return other
 
     def evaluate(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
@@ -660,7 +660,7 @@ class FlowValues:
         found = list(self.evaluate_variable(variable, fn, (*seen, variable), self._find_origins(path, fn), at, line))
         if not found:
             found = list(self._evaluate_declared(path, fn, line, (*seen, variable)))
-        told = None if found else self.find_message_text(path, fn)
+        told = None if found else self.find_outside_text(path, fn)
         if found:
             yield from found
         elif told is not None:
