@@ -66,6 +66,11 @@ class Elements:
         held = self._find_held(container, fn, line)
         return _join_held(held) if held else None
 
+    def list_turns(self, container: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
+        """What a loop goes through in its turns, one in each. None where that is not written out in one place."""
+        held = self._find_held(container, fn, line)
+        return list(held[0].elements) if held and len(held) == 1 and held[0].whole else None
+
     def select(self, container: FlowExpr, key: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
         """What stands at a place, or at a key, that is a literal. None where that is not written out."""
         held = self._find_held(container, fn, line)
