@@ -28,7 +28,7 @@ from .modules import CodeFile
 from .outside_constants import OutsideConstants
 from .templates import Templates
 from .types import find_header_interface, find_interface, parse_flow_type
-from .values import LOST, FlowValue, FlowValues, make_sibling
+from .values import LOST, WHICH_TURN, FlowValue, FlowValues, make_sibling
 
 _NOT_YET = frozenset(("", "None", "nullptr"))
 _CONNECTS = ("connectInput", "reset")
@@ -243,8 +243,8 @@ class Sites:
         Where there are several namespaces, it is empty, and the names have theirs. values: what expressions are worth
         where it runs."""
         spaces, names = self._list_spaces(use, values), self._list_written_names(use, values)
-        if len(spaces) > 1 or len(names) > 1:
-            ways = self.contexts.list_contexts(use.fn, values)
+        if len(spaces) > 1 or len(names) > 1 or any(one.reason == WHICH_TURN for one in names):
+            ways = self.contexts.list_contexts(use.fn, use.call.guard, values)
             if len(ways) > 1:
                 rows = [(self._list_spaces(use, way), self._list_written_names(use, way)) for way in ways]
                 if len({tuple(each) for each, _ in rows}) > 1 or len(spaces) > 1:

@@ -421,7 +421,7 @@ class Join:
             settings = {name[len(below) :]: text for name, text in settings.items() if name.startswith(below)}
         for load in self.hosts.list_hosted(one.functions, one.values, settings):
             for part in self.list_running():
-                is_it = self._derives(part, load.name) if load.is_base else self._is_plugin(part.program, load.name)
+                is_it = self._is_derived(part, load.name) if load.is_base else self._is_plugin(part.program, load.name)
                 if part.program.kind != "plugin" or not is_it or not part.functions:
                     continue
 
@@ -438,7 +438,7 @@ class Join:
                         within=within, only_if=load.only_if,
                     )  # fmt: skip
 
-    def _derives(self, one: Running, base: str) -> bool:
+    def _is_derived(self, one: Running, base: str) -> bool:
         """Whether the class of a plugin derives from one of a name."""
         named = self.code.classes.get(get_tail(one.program.plugin), ())
         return any(get_tail(name) == base for cls in named for name in self.code.list_base_names(cls))
