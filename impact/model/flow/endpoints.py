@@ -252,7 +252,8 @@ class Sites:
                     return "", tuple(dict.fromkeys(found))
                 names = tuple(dict.fromkeys(one for _, own in rows for one in own))
                 known = tuple(one for one in names if one.text is not None)
-                names = known or names[:1] if not any(one.beside for one in names) else names
+                in_part = tuple(one for one in names if one.shown)
+                names = known or in_part or names[:1] if not any(one.beside for one in names) else names
         if len(spaces) > 1:
             return "", self._join_spaces(spaces, names)
         prefix = spaces[0].text or ""
@@ -278,7 +279,10 @@ class Sites:
         for space in spaces:
             for name in names:
                 lost = (space.text or "").startswith(LOST)
-                if name.text is None or name.text[:1] in ("/", "~"):
+                if name.text is None and name.shown and name.shown[:1] not in ("/", "~"):
+                    inside = "" if lost else join_spaces(space, FlowValue(name.shown)).text or ""
+                    found.append(name._replace(shown=inside))
+                elif name.text is None or name.text[:1] in ("/", "~"):
                     found.append(name)
                 elif lost:
                     reason = "the namespace of its node handle is not known"

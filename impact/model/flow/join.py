@@ -855,9 +855,9 @@ class Join:
         """The full name that a site has in a node, how it is known, and why not."""
         node = _get_node(owner)
         instance = owner.instance if isinstance(owner, Running) else None
-        if value.text is None:
+        text = value.text if value.text is not None else value.shown
+        if value.text is None and not text:
             return "", "unresolved", value.reason
-        text = value.text
         loaded = owner.loaded if isinstance(owner, Running) else None
         unknown = f"/<{(node.executable or get_tail(node.plugin)) if node else 'node'}>"
         full = loaded.name if loaded is not None else (node and node.name) or unknown
@@ -891,7 +891,7 @@ class Join:
         except NameRefused as error:
             return "", "unresolved", str(error)
         if is_open(name) or value.how == "partly":
-            return name, "partly", ""
+            return name, "partly", value.reason
         if name != plain:
             return name, "launch", ""
         return name, "given" if site.implied and value.how == "literal" else value.how, ""

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 from msgspec import structs
 
+from ....edges.groups import group_pairs
 from ...facts.launch.parameter_files import ParameterFile
 from ..workspace import Workspace
 from .code import get_tail
@@ -90,13 +91,16 @@ def _list_loads(path: str, file: ParameterFile | None) -> Iterator[tuple[str, Pl
 
 
 def assign_plugins(graph: Graph, loads: Mapping[str, Iterable[PluginLoad]]) -> Graph:
-    """A graph with each of its plugins in the nodes that load it, by class; those that nothing loads stay."""
-    placed = {
-        node.id: (node, tuple(loads.get(node.plugin.removeprefix("::"), ())))
-        for node in graph.nodes
-        if node.kind == "plugin" and not node.name
-    }
-    placed = {id_: row for id_, row in placed.items() if row[1]}
+    """A graph with each of its plugins in the nodes that load it, by class; those that nothing loads stay. Where its
+    code tells already that a node loads it, it is there."""
+    hosts = group_pairs((program, node.name) for node in graph.nodes for program in node.loads)
+    placed: dict[str, tuple[Node, tuple[PluginLoad, ...]]] = {}
+    for node in graph.nodes:
+        if node.kind == "plugin" and not node.name:
+            given = tuple(loads.get(node.plugin.removeprefix("::"), ()))
+            there = hosts.get(f"{node.package}/{node.plugin}", [])
+            if given or there:
+                placed[node.id] = node, tuple(one for one in given if one.node not in there)
     if not placed:
         return graph
 

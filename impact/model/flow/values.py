@@ -23,7 +23,7 @@ from .elements import SETTING, Elements, ListElement, find_begun
 from .given_lists import GivenLists
 from .graph import How
 from .literals import spell_number
-from .names import is_open, resolve_ros1_name
+from .names import is_open, make_open_part, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
 from .reaching import LOOPS, FlowValue, ReachingValues
 from .types import split_name
@@ -39,6 +39,8 @@ _MOST = 12
 _MOST_TURNS = 64
 _DEEPEST = 12
 _FAR = 6
+# Names that are known in part, of one endpoint.
+_MOST_IN_PART = 4
 # Up to here it is asked of each value whether its branch is come to.
 _NEAR = 3
 # Expressions looked at for one value, and characters of it: each variable may be written from two others.
@@ -322,7 +324,8 @@ class FlowValues:
         beside = [one for one in found if one.beside][:1]
         if known and beside:
             return [*(one._replace(how="partly") for one in known), *beside]
-        return known or found[:1] or [FlowValue(None, "unresolved", "no value is given")]
+        in_part = list({one.shown: one for one in found if one.shown}.values())
+        return known or in_part[:_MOST_IN_PART] or found[:1] or [FlowValue(None, "unresolved", "no value is given")]
 
     def find_only_text(self, value: FlowExpr, fn: Fn) -> str | None:
         """The first text that an expression may be worth, None where something unknown may be in its place."""
@@ -411,7 +414,9 @@ class FlowValues:
             # Numbers are added; of what may be either, it is not known.
             numbers = plain and all(one.text is not None and is_number(one.text) for one in row)
             counted = numbers and value.text == "+" and any(part.kind == "number" for part in value.parts)
-            if counted:
+            if any(one.text is None for one in row):
+                yield _join_in_part(row, value) if value.text in ("", "+") else _join(row)
+            elif counted:
                 joined = _join(row)
                 yield joined._replace(text=str(sum(int(one.text or "") for one in row)))
             elif numbers:
@@ -990,7 +995,9 @@ class FlowValues:
         guard = -1 if branch.holds else each.guard
         if each.operator == "+=" and _is_string(each.value) and found.is_counted(each.guard):
             added = list(self._evaluate(each.value, fn, each.line, seen))
-            values = [_join((one.value, more)) for one in found.held[:_MOST] for more in added[:_MOST]][:_MOST]
+            whole = FlowExpr("join", "", (FlowExpr("name", each.target), each.value))
+            rows = [(one.value, more) for one in found.held[:_MOST] for more in added[:_MOST]][:_MOST]
+            values = [_join_in_part(row, whole) for row in rows]
         elif _mentions(each.value, each.target) and not found.is_counted(each.guard):
             values = [FlowValue(None, "unresolved", f"`{each.target}` is put together in steps", beside=True)]
         else:
@@ -1511,6 +1518,29 @@ def make_sibling(topic: str, name: str) -> str:
     return f"{head}{slash}{name}"
 
 
+def _join_in_part(row: tuple[FlowValue, ...], value: FlowExpr) -> FlowValue:
+    """A text that is put together, known in part where a piece of it is not known. value: the expression."""
+    joined = _join(row)
+    if joined.text is not None:
+        return joined
+    parts = zip(row, value.parts, strict=True)
+    shown = "".join(
+        one.text if one.text is not None else one.shown or make_open_part(f"<{_label(part)}>") for one, part in parts
+    )
+    known = _WORD_OR_NUMBER.search(_BRACKETS.sub("", shown)) and len(shown) < _LONGEST_IN_PART and "{" not in shown
+    # What begins with something unknown may be in any namespace.
+    return joined._replace(shown=shown if known and shown[0] != "<" else "")
+
+
+def _label(value: FlowExpr) -> str:
+    """A short name for what is not known."""
+    while value.kind in ("call", "make", "keyword") and len(value.parts) == 1:
+        value = value.parts[0]
+    if value.kind == "index" and value.parts:
+        return _label(value.parts[0])
+    return get_tail(value.text.replace("[]", "").rstrip("().")) or "..."
+
+
 def _join_texts(*texts: str) -> str:
     return " && ".join(dict.fromkeys(filter(None, texts)))
 
@@ -1565,6 +1595,9 @@ def _is_string(value: FlowExpr) -> bool:
     return written or (value.kind == "join" and (not value.text or any(map(_is_string, value.parts))))
 
 
+_WORD_OR_NUMBER = re.compile(r"\w")
+_BRACKETS = re.compile(r"<[^<>]*>")
+_LONGEST_IN_PART = 200
 _COUNTED = re.compile(r"0?[0-9]{0,2}d?")
 
 
