@@ -12,7 +12,7 @@ from ...model.package import find_folder_role, is_called_example
 from ..vocabulary import Doubt, Need, Package, TargetView
 from .data_files import list_copied
 from .dependants import list_compiled_elsewhere
-from .install_rules import LAUNCH_FILE, is_installed, may_stay_behind, read_installs
+from .install_rules import LAUNCH_FILE, is_installed, list_references, may_stay_behind, read_installs
 
 ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program", "environment"))
 """How CMake asks for something, so that the configuration stops without it."""
@@ -124,19 +124,22 @@ def _is_reached(view: TargetView, package: Package, need: Need) -> bool:
     """Whether a need is met whenever something that the package installs is started: an installed launch file that
     starts it in any case, or a program in Python that imports it in any case."""
     path = need.at.path
-    if need.role != "run" or not need.required:
+    if need.role != "run" or not need.required or need.how not in ("import", "launch"):
         return False
+    installs = read_installs(view, package)
+    installs = (list_copied(package) if installs is None else installs) or []
     if need.how == "launch":
-        installs = read_installs(view, package)
-        installs = list_copied(package) if installs is None else installs
-        installed = is_installed(installs or (), path) and not may_stay_behind(view, package, path)
+        installed = is_installed(installs, path) and not may_stay_behind(view, package, path)
         return installed and LAUNCH_FILE.search(path) is not None
-    if need.how != "import":
-        return False
-    return path in package.linked.scripts or any(
-        path in file.list_module_paths(posixpath.dirname(setup), module)
-        for setup, file in package.linked.setup
-        for _, module, *_ in file.entry_points
+    of_programs = (rule for rule in installs if rule.kind == "programs" or rule.destination.startswith("lib/"))
+    return (
+        posixpath.basename(path) in list_references(view, package, "executable")
+        or (is_installed(of_programs, path) and not may_stay_behind(view, package, path))
+        or any(
+            path in file.list_module_paths(posixpath.dirname(setup), module)
+            for setup, file in package.linked.setup
+            for _, module, *_ in file.entry_points
+        )
     )
 
 

@@ -52,7 +52,7 @@ def is_installed(installs: Iterable[Install], path: str) -> bool:
 def may_stay_behind(view: TargetView, package: Package, path: str) -> bool:
     """Whether a Python file counts as installed only since install rules take what is not known: a variable that
     nothing sets may name it, or not. What a launch file or script starts is there."""
-    installs = read_installs(view, package) or []
+    installs = [rule for rule in package.build.installs if view.applies(rule.conditions)]
     known = [rule for rule in installs if not any("$" in item for item in rule.items)]
     inside = package.strip_path(path)
     by_setup = package.build_type == "catkin" and inside.startswith("src/") and package.has_files("setup.py")
