@@ -751,6 +751,9 @@ class FlowCode:
         by_path, source = self._constants.get(get_tail(variable.name), {}), fn.source
         if source.facts.language == "python":
             return by_path.get(variable.owner, [])
+        if "::" in variable.name:
+            # `namespace t = robot::topics`
+            variable = variable._replace(name=self.resolve_name(variable.name, source, fn.scope))
         if not by_path:
             return []
         seen = self._seen_files.list_seen(source.path)

@@ -55,7 +55,8 @@ _MOST_KNOWN = 24
 # Calls that give what they are called on, or their first argument, as a string.
 _SAME = frozenset(
     ("c_str", "str", "as_string", "string_value", "value", "get_parameter_value", "strip", "lstrip", "rstrip", "data",
-     "get_value", "to_string", "as_int", "as_bool", "as_double", "as_string_array", "string_array_value")
+     "get_value", "string", "generic_string", "native", "to_string", "as_int", "as_bool", "as_double",
+     "as_string_array", "string_array_value")
 )  # fmt: skip
 _OF_FIRST = frozenset(("resolveName", "resolve_name", "remap_name", "resolve", "string", "str", "String", "move",
                        "forward", "ParameterValue", "expand_topic_or_service_name", "resolve_topic_name",
@@ -403,6 +404,7 @@ class FlowValues:
             yield one if sure or one.how not in ("literal", "given") else one._replace(how="default")
 
     def _evaluate_join(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
+        value = _spell_boost_format(value) or value
         pieces = [_take_first(self._evaluate(part, fn, line, seen)) for part in value.parts]
         # Of several pieces with several values each, it is not known which belong together.
         several = [{one.text for one in piece if one.text is not None} for piece in pieces]
@@ -997,12 +999,18 @@ class FlowValues:
             added = list(self._evaluate(each.value, fn, each.line, seen))
             whole = FlowExpr("join", "", (FlowExpr("name", each.target), each.value))
             rows = [(one.value, more) for one in found.held[:_MOST] for more in added[:_MOST]][:_MOST]
-            values = [_join_in_part(row, whole) for row in rows]
+            values = _mark_unknown(_join_in_part(row, whole) for row in rows)
+        elif each.operator == "/=" and found.is_counted(each.guard):
+            added = list(self._evaluate(each.value, fn, each.line, seen))
+            rows = [(one.value, more) for one in found.held[:_MOST] for more in added[:_MOST]][:_MOST]
+            paths = [(row, posixpath.join(*(one.text or "" for one in row))) for row in rows]
+            joined = ((_join(row), path) for row, path in paths)
+            values = _mark_unknown(one if one.text is None else one._replace(text=path) for one, path in joined)
         elif _mentions(each.value, each.target) and not found.is_counted(each.guard):
             values = [FlowValue(None, "unresolved", f"`{each.target}` is put together in steps", beside=True)]
         else:
             values = _mark_unknown(self._evaluate_written(each, fn, origins, seen))
-        if each.operator in ("=", "+=") and "." not in each.target.removeprefix("this."):
+        if each.operator in ("=", "+=", "/=") and "." not in each.target.removeprefix("this."):
             found.assign(values, guard)
         else:
             found.add(values, guard)
@@ -1073,6 +1081,8 @@ class FlowValues:
             yield from self._evaluate(each.value, writer, each.line, seen)
         elif each.operator == "for":
             yield from self._evaluate_elements(each.value, writer, each.line, seen)
+        elif each.operator == "/=":
+            yield FlowValue(None, "unresolved", f"`{each.target}` is put together in steps", True)
         elif each.operator == "+=":
             # What is counted has other values beside the first.
             counted = each.value.kind == "number"
@@ -1218,7 +1228,7 @@ class FlowValues:
             yield from self._evaluate_string_method(value, fn, line, seen)
             return
         if head and (last in _SAME or (last == "get" and value.receiver is not None and not value.parts)):
-            if value.receiver is not None and value.receiver.kind == "call":
+            if value.receiver is not None and (value.receiver.kind == "call" or head == "()"):
                 yield from self._evaluate(value.receiver, fn, line, seen)
             elif head.endswith("()"):
                 yield from self._evaluate_inner(head.removesuffix("()"), fn, line, seen)
@@ -1253,6 +1263,9 @@ class FlowValues:
         # Options of ROS 1 are named by the name they are for.
         if last == "string" and len(value.parts) > 1:
             yield FlowValue(None, "unresolved", f"what `{value.text}` makes of several values is not followed")
+            return
+        if last == "path" and value.text.endswith(("filesystem::path", "fs::path")) and len(value.parts) == 1:
+            yield from self._evaluate(value.parts[0], fn, line, seen)
             return
         if (last in _OF_FIRST or (last.startswith("create") and "Options::" in value.text)) and value.parts:
             yield from self._evaluate(value.parts[0], fn, line, seen)
@@ -1593,6 +1606,40 @@ def _is_string(value: FlowExpr) -> bool:
     """Whether an expression shows itself to be a string, and no number."""
     written = value.kind == "text" or (value.kind == "number" and value.text[:1] == "'")
     return written or (value.kind == "join" and (not value.text or any(map(_is_string, value.parts))))
+
+
+_BOOST = re.compile(r"%(?:(?P<place>[1-9])%|\|(?P<barred>[1-9])\$[sd]?\||(?P<next>[sd])|(?P<itself>%))")
+
+
+def _spell_boost_format(value: FlowExpr) -> FlowExpr | None:
+    """`boost::format("/a%1%/%s") % b % c` as a text that is put together; None for all else, and for other formats."""
+    if value.text != "%":
+        return None
+    given: list[FlowExpr] = []
+    while value.kind == "join" and value.text == "%" and value.parts:
+        given[:0] = value.parts[1:]
+        value = value.parts[0]
+    written = value.parts[0] if value.parts else None
+    if value.kind not in ("call", "make") or get_tail(value.text) != "format" or len(value.parts) != 1:
+        return None
+    if written is None or written.kind != "text":
+        return None
+    pieces: list[FlowExpr] = []
+    at = number = 0
+    for found in _BOOST.finditer(written.text):
+        pieces.append(FlowExpr("text", written.text[at : found.start()]))
+        at = found.end()
+        if found["itself"]:
+            pieces.append(FlowExpr("text", "%"))
+            continue
+        place = int(found["place"] or found["barred"] or 0) - 1 if not found["next"] else number
+        number += bool(found["next"])
+        if place >= len(given):
+            return None
+        pieces.append(given[place])
+    pieces.append(FlowExpr("text", written.text[at:]))
+    plain = "%" not in "".join(one.text for one in pieces[::2])
+    return FlowExpr("join", "", tuple(one for one in pieces if one.kind != "text" or one.text)) if plain else None
 
 
 _WORD_OR_NUMBER = re.compile(r"\w")

@@ -52,7 +52,7 @@ IN_CPP = [
     ('char name[50]; sprintf(name, "/imu%02d", 2);', "name", "/imu02"),
     ('std::filesystem::path base("/maps");', 'base / "city"', "/maps/city"),
     ('std::filesystem::path base("/maps/");', 'base / "city"', "/maps/city"),
-    ("", 'boost::format("/leg%1%") % 3', "?"),
+    ("", 'boost::format("/leg%1%") % 3', "/leg3"),
     # What is read of a string, or is made of it, leaves it as it is.
     ('std::string n = "/a"; if (std::find(n.begin(), n.end(), \'a\') != n.end()) {}', "n", "/a"),
     ('std::string n = "/a"; auto other = boost::to_upper_copy(n);', "n", "/a"),
