@@ -84,7 +84,8 @@ def summarize_values(answer: ValuesAnswer) -> str:
 def _describe_bounds(bounds: Bounds) -> str:
     return (
         f"within texts of {bounds.text} bytes, arrays of {bounds.array} elements, loops of {bounds.loops} rounds and "
-        f"{bounds.seconds:g} s for each callback; values of other sizes were not looked at"
+        f"{bounds.seconds:g} s for each callback ({bounds.compiling:g} s for compiling its source); values of other "
+        "sizes were not looked at"
     )
 
 
@@ -229,7 +230,7 @@ def render_values_json(answer: ValuesAnswer, version: str) -> str:
         "tool": {"name": "rosimpact", "version": version},
         "bounds": {"text": answer.report.bounds.text, "array": answer.report.bounds.array,
                    "loops": answer.report.bounds.loops, "paths": answer.report.bounds.paths,
-                   "seconds": answer.report.bounds.seconds},
+                   "seconds": answer.report.bounds.seconds, "compiling": answer.report.bounds.compiling},
         "replayed": answer.report.replayed,
         "offline": answer.report.is_offline,
         "callbacks": [_describe_callback(one) for one in answer.report.callbacks],
@@ -245,7 +246,7 @@ def _describe_callback(one: CallbackAnswer) -> dict[str, Any]:
         "callback": one.callback, "kind": one.kind, "language": one.language, "path": one.path, "line": one.line,
         "type": one.message_type, "topics": one.topics, "nodes": one.nodes, "reason": one.reason,
         "ways": {result.value: count for result, count in one.counts.items()}, "left": one.left,
-        "seconds": round(one.seconds, 3),
+        "seconds": round(one.seconds, 3), "compiled_in": round(one.compiled_in, 3), "rounds": one.rounds,
         "fields": [
             {
                 "field": field.path, "kind": field.kind.value,

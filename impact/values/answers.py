@@ -85,7 +85,8 @@ class SentThrough:
 class CallbackAnswer:
     """One callback. kind: `subscriber`, `service`, `timer`, `action`. reason: why it was not explored; empty else.
     unknown: why ways are unknown, with their number. left: ways that were not ended. stood_for: what the harness stands
-    in for. is_bare: no constructor of the node was run, so that members are empty."""
+    in for. is_bare: no constructor of the node was run, so that members are empty. compiled_in: seconds of the
+    processor that compilers worked for its source and what that calls; rounds: how often they ran."""
 
     callback: str
     kind: str
@@ -107,6 +108,8 @@ class CallbackAnswer:
     left: int = 0
     seconds: float = 0.0
     is_bare: bool = False
+    compiled_in: float = 0.0
+    rounds: int = 0
 
     @property
     def is_explored(self) -> bool:

@@ -125,7 +125,8 @@ class CallbackPath:
 
 @dataclass(frozen=True)
 class Bounds:
-    """How far an exploration goes; printed with every answer. seconds: time limit of one callback."""
+    """How far an exploration goes; printed with every answer. seconds: time limit of one callback; compiling: seconds
+    of the processor for a source file of C++ with all that it calls."""
 
     text: int = 8
     array: int = 3
@@ -133,6 +134,7 @@ class Bounds:
     paths: int = 4000
     seconds: float = 20.0
     memory: int = 2_000_000_000
+    compiling: float = 60.0
 
 
 class UnknownFunction(NamedTuple):

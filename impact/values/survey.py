@@ -288,7 +288,7 @@ class Survey:
             path, line = one.function_place
             answer = CallbackAnswer(
                 one.callback, one.kind, "cpp", path, line, one.message_type, one.topics, one.nodes, self.bounds,
-                one.reason, stood_for=one.stood_for,
+                one.reason, stood_for=one.stood_for, compiled_in=one.compiled_in, rounds=one.rounds,
             )  # fmt: skip
             identity = one.kind, one.path, one.line, one.callback
             yield _Target(identity, answer, _name_constants(one.constants, self.workspace.ros), one)
@@ -342,7 +342,7 @@ class Survey:
                 continue
             # The top of a module has no name.
             name = one.site.name if one.kind == "main" else one.name
-            code = CallbackCode(module, name, line, one.message_type)
+            code = CallbackCode(module, name, line, one.message_type, one.joined, one.place)
             yield _Target(_identify(one), answer, self._name_python_constants(one.message_type), code=code)
 
     def _name_python_constants(self, type_: str) -> Mapping[str, Mapping[int, str]]:
@@ -375,7 +375,7 @@ class Survey:
         own = list_folders([path])
         place = ReplayPlace(
             self.root, (*own, *[one for one in folders if one not in own]), target.code.module.name,
-            target.answer.callback, target.answer.message_type, path,
+            target.answer.callback, tuple(target.code.list_messages()), path,
         )  # fmt: skip
         with tempfile.TemporaryDirectory(prefix="rosimpact-replay-") as folder:
             messages = self._make_messages()
@@ -438,6 +438,9 @@ def _refuse(callback: CppCallback) -> str:
         return f"{place}: the callback is not known"
     if callback.kind in ("service", "action"):
         return f"{place}: callbacks of a {callback.kind} in Python are not explored"
+    parameters = [one for one in callback.function.facts.parameters if one.default is None and one.name != "self"]
+    if callback.is_filtered and not callback.joined and len(parameters) != 1:
+        return f"{place}: which of the messages that a synchronizer gives is this one is not known"
     is_known = callback.message_type or callback.kind in ("timer", "main")
     return "" if is_known else f"{place}: the type of its message is not known"
 

@@ -240,7 +240,7 @@ class Elements:
         if variable.kind == "member":
             # What another program writes into its own object, unless nothing that runs writes it.
             written = [row for row in written if self._runs(row[0])] or written
-        for writer, each in _select_reaching(written, variable, fn, line):
+        for writer, each in _select_holding(written, variable, fn, line):
             if each.key is not None:
                 further.append(ListElement(FlowExpr("list", "", (each.key, each.value)), writer, each.line))
                 continue
@@ -318,15 +318,23 @@ class Elements:
                 yield ListElement(default, fn, fn.facts.line)
 
 
-def _select_reaching(
+def _select_holding(
     written: Sequence[tuple[Fn, Assignment]], variable: Variable, fn: Fn, line: int
 ) -> Sequence[tuple[Fn, Assignment]]:
     """Of assignments to a variable those that may hold on a line of a function: where it is a local one, none that is
     surely replaced before, and none that comes after."""
     if variable.kind != "local" or any(writer is not fn for writer, _ in written):
         return written
+    return select_reaching(written, fn, line)
+
+
+def select_reaching(
+    written: Sequence[tuple[Fn, Assignment]], fn: Fn, line: int
+) -> Sequence[tuple[Fn, Assignment]]:  # fmt: skip
+    """Of assignments in a function those that may hold on a line of it, 0 for its end: none that is surely replaced
+    before, and none that comes after."""
     guards = {place for guard in fn.collect_guards(line) for place in fn.list_guards_around(guard)}
-    before = [each for _, each in written if each.line <= line]
+    before = [each for _, each in written if not line or each.line <= line]
     sure = [
         each.line for each in before
         if each.key is None and each.operator in ("=", "for") and (each.guard < 0 or each.guard in guards)

@@ -23,7 +23,8 @@ class Node(msgspec.Struct, frozen=True):
     kind: `executable`, `component`, `nodelet`, `plugin`, `script`, or `library` for code that no executable of the
     workspace uses. plugin: the class, for what is loaded. started: `path:line` of the launch file, empty without one.
     uncertain: why the launch file may give it another name, or may not start it at all. launches: the launch files of
-    the workspace that start it, by themselves or by what they include, where the graph is of all of them.
+    the workspace that start it, by themselves or by what they include, where the graph is of all of them. loads: the
+    plugins of the workspace that its code loads into it, as `package/Class`.
     """
 
     id: str
@@ -38,6 +39,7 @@ class Node(msgspec.Struct, frozen=True):
     started: str = ""
     uncertain: tuple[str, ...] = ()
     launches: tuple[str, ...] = ()
+    loads: tuple[str, ...] = ()
 
 
 class Callback(msgspec.Struct, frozen=True):

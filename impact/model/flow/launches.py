@@ -449,7 +449,8 @@ def _list_names(join: Join, one: Running, instance: Instance) -> Iterator[str]:
         if site.use.fn in one.functions and join.runs(one, site.use):
             values = site.names
             if not site.implied:
-                values = join.sites.list_names(site.use, site.prefix, one.values)
+                prefix, values = join.sites.find_names(site.use, one.values)
+                site = site._replace(prefix=prefix)
             for value in values:
                 yield join.resolve_name(site, value, bare)[0]
 
@@ -464,7 +465,7 @@ def _collect_parameters(join: Join, one: Running, instance: Instance) -> set[str
             if instance.started.generation != 1:
                 found |= names
                 continue
-            prefix = LOST if one.loaded is not None else join.sites.find_prefix(use)
+            prefix = LOST if one.loaded is not None else join.sites.find_prefix(use, one.values)
             found.update(_resolve_parameter(name, prefix, instance) for name in names)
     return found
 

@@ -47,6 +47,8 @@ def merge_launches(code: Graph, launches: Sequence[Launch]) -> Graph:
     programs = {start.program for launch in launches for start in launch.starts}
     possible = [(launch.path, launch.possible) for launch in launches if launch.possible is not None]
     programs |= {_get_program(node) for _, graph in possible for node in graph.nodes}
+    programs |= {one for launch in launches for node in launch.graph.nodes for one in node.loads}
+    programs |= {one for _, graph in possible for node in graph.nodes for one in node.loads}
     started = {
         node.id
         for node in code.nodes

@@ -22,6 +22,7 @@ from .conditions import ConditionReader, DecidedCondition, is_truth
 from .elements import SETTING, Elements, ListElement
 from .given_lists import GivenLists
 from .graph import How
+from .literals import spell_number
 from .names import is_open, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
 from .reaching import LOOPS, FlowValue, ReachingValues
@@ -210,10 +211,11 @@ class FlowValues:
         self.settings, self.arguments, self.way, self.within = settings or {}, arguments, way or {}, within
         self.node, self.made = node, made or {}
         # The namespace of the node handle that a use is called on, and what is known of that, by the call.
-        self.find_prefix: Callable[[FrameworkCall], str] = lambda use: ""
+        self.find_prefix: Callable[[FrameworkCall, FlowValues], str] = lambda use, values: ""
         # The value of a constant of a message or a released package by its path, where it is a string.
         self.find_outside_text: Callable[[str, Fn], str | None] = lambda path, fn: None
         self._prefixes: dict[int, str] = {}
+        self._asked_prefixes: set[int] = set()
         self._left = _MOST_STEPS
         self._budget = [_STEPS_IN_ALL + _STEPS_A_FUNCTION * len(self.code.functions)]
         # Decided guards, each with what it rests on.
@@ -262,6 +264,7 @@ class FlowValues:
         other._known, other._works, other._asking = self._known, self._works, self._asking
         other._turns = self._turns
         other.find_prefix, other._prefixes = self.find_prefix, self._prefixes
+        other._asked_prefixes = self._asked_prefixes
         other.find_outside_text = self.find_outside_text
         return other
 
@@ -344,7 +347,9 @@ class FlowValues:
         if kind == "number" and value.text[:1] == "'":
             one = _read_character(value.text)
             yield FlowValue(one) if one else FlowValue(None, "unresolved", f"`{value.text}` is not followed")
-        elif kind in ("text", "number"):
+        elif kind == "number":
+            yield FlowValue(spell_number(value.text, fn.source.facts.language == "cpp"))
+        elif kind == "text":
             yield FlowValue(value.text)
         elif kind == SETTING:
             yield FlowValue(value.text, "launch")
@@ -521,7 +526,7 @@ class FlowValues:
     @cached_property
     def elements(self) -> Elements:
         """What lists and dictionaries of the code hold."""
-        return Elements(self.code, self._runs, self.way, self.made, GivenLists(self).find, self.take_turn)
+        return Elements(self.code, self.runs, self.way, self.made, GivenLists(self).find, self.take_turn)
 
     def _evaluate_chosen(
         self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
@@ -804,7 +809,7 @@ class FlowValues:
             written = [(w, each) for w, each in written if self.origins.may_be_of(each.target, w, origins)]
         if variable.kind == "member":
             # What another program writes into its own object, unless nothing that runs writes it.
-            written = [(w, each) for w, each in written if self._runs(w)] or written
+            written = [(w, each) for w, each in written if self.runs(w)] or written
         rows, given = self._select_given(written)
         own = [each for writer, each in rows if writer is fn and line]
         around = fn.list_guards_around(self._find_guard_of(fn, line, seen)) if line else ()
@@ -934,7 +939,7 @@ class FlowValues:
             # What a parameter that surely has a value is read into is worth nothing else any more.
             if any(each.line < use.call.line and each.guard == use.call.guard for use in sure):
                 continue
-            if self._decide_branch(each.guard, writer, seen).holds is not False and found.may_run(each.guard):
+            if self.decide_branch(each.guard, writer, seen).holds is not False and found.may_run(each.guard):
                 tested = found.exclude(each.guard) or tested
                 found.add(_mark_unknown(self._evaluate_written(each, writer, origins, seen)), each.guard)
         return found.list_values() if tested else _restore_alone(found.list_values())
@@ -943,7 +948,7 @@ class FlowValues:
         self, each: Assignment, fn: Fn, found: ReachingValues, origins: Origins | None, seen: tuple
     ) -> None:  # fmt: skip
         """Goes on with an assignment in the function that reads the variable later."""
-        branch = self._decide_branch(each.guard, fn, seen)
+        branch = self.decide_branch(each.guard, fn, seen)
         if branch.holds is False or not found.may_run(each.guard):
             return
         # What the launch opens surely runs.
@@ -960,7 +965,7 @@ class FlowValues:
         else:
             found.add(values, guard)
 
-    def _decide_branch(self, guard: int, fn: Fn, seen: tuple) -> DecidedCondition:
+    def decide_branch(self, guard: int, fn: Fn, seen: tuple = ()) -> DecidedCondition:
         """Whether a place in a function is come to, as far as the launch decides it by parameters, or by how many
         arguments it gives; holds is None for all else, and for what is asked for by the way."""
         if guard < 0 or not self._find_asking(fn, guard):
@@ -1100,7 +1105,7 @@ class FlowValues:
         calls = ((caller, call.arguments, call.line) for caller, call in self.code.callers.get(fn, ())
                  if only is None or call is only)  # fmt: skip
         for caller, arguments, line in self.made.get(fn) or (*calls, *self.code.list_constructed(fn)):
-            if self._runs(caller):
+            if self.runs(caller):
                 argument = find_argument(arguments, place, parameter.name)
                 given, lacking = given or argument is not None, lacking or argument is None
                 if argument is not None:
@@ -1111,6 +1116,26 @@ class FlowValues:
         elif not given:
             reason = f"an argument of `{fn.name or 'the module'}`, which nothing here calls"
             yield FlowValue(None, "given", reason, uncalled=self.code.is_idle(fn), unpassed=True)
+
+    def list_given(self, fn: Fn, place: int, name: str) -> Iterator[tuple[FlowExpr, Fn, int]]:
+        """What those that run give for a parameter of a function, with who does and at which line."""
+        only = self.way.get(fn)
+        if self._works:
+            self._works[-1].note_way(fn, only)
+            self._works[-1].note_maker(fn, self.made.get(fn))
+        rows = [(caller, call.arguments, call.line) for caller, call in self.code.callers.get(fn, ())
+                if only is None or call is only]  # fmt: skip
+        rows += [(binder, arguments, 0) for binder, arguments in self.code.bound.get(fn, ())]
+        for giver, arguments, line in self.made.get(fn) or (*rows, *self.code.list_constructed(fn)):
+            argument = find_argument(arguments, place, name) if self.runs(giver) else None
+            if argument is not None:
+                yield argument, giver, line
+
+    def is_left_out(self, fn: Fn) -> bool:
+        """Whether a function is a constructor that makes none of the objects which these values are about."""
+        if self._works:
+            self._works[-1].note_maker(fn, self.made.get(fn))
+        return fn in self.made and self._is_made_otherwise(fn)
 
     def _find_given(self, value: FlowExpr, fn: Fn) -> tuple[int, FlowParameter] | None:
         """The parameter of a constructor that a value is, None for all else."""
@@ -1123,12 +1148,13 @@ class FlowValues:
         owner = self.code.find_owner(fn)
         place, facts = parameter
         for maker, arguments, line in self.code.constructions.get(owner.key, ()) if owner is not None else ():
-            if (maker.place, arguments) in origins.made and self._runs(maker):
+            if (maker.place, arguments) in origins.made and self.runs(maker):
                 argument = find_argument(arguments, place, facts.name) or self.code.find_default(fn, place, facts)
                 if argument is not None:
                     yield from self._evaluate(argument, maker, line, seen)
 
-    def _runs(self, fn: Fn) -> bool:
+    def runs(self, fn: Fn) -> bool:
+        """Whether a function runs, as far as it is known which do."""
         runs = self.within is None or fn in self.within
         if self._works:
             (self._works[-1].runs if runs else self._works[-1].idle).add(fn)
@@ -1193,11 +1219,19 @@ class FlowValues:
             for one in self._evaluate(value.parts[0], fn, line, seen):
                 yield one if one.text is None else one._replace(text=make_sibling(one.text, "camera_info"))
             return
+        if last == "getName" and len(value.parts) == 1 and head and self._is_loader(head, fn):
+            for one in self._evaluate(value.parts[0], fn, line, seen):
+                yield one if one.text is None else one._replace(text=re.split(r"[/:]", one.text)[-1])
+            return
         if last == "append" and len(value.parts) == 2 and "names" in value.text:
             first, second = value.parts
             yield from self._evaluate_join(FlowExpr("join", "", (first, FlowExpr("text", "/"), second)), fn, line, seen)
             return
         yield from self._evaluate_inner(value.text, fn, line, seen, value.parts)
+
+    def _is_loader(self, path: str, fn: Fn) -> bool:
+        """Whether a variable is pluginlib's loader, whose getName() strips a name of its package."""
+        return get_tail(self.code.resolve_name_type(path, fn).name) == "ClassLoader"
 
     def _evaluate_string_method(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         """What a method of a string of Python gives, and `os.path.join`."""
@@ -1289,12 +1323,26 @@ class FlowValues:
         """The name of a parameter in the namespace of the node handle that it is asked of."""
         if not self.node or name[:1] in ("/", "~"):
             return name
-        if id(use.call) not in self._prefixes:
-            self._note_others()
-            self._prefixes[id(use.call)] = LOST  # as long as it rests on itself
-            self._prefixes[id(use.call)] = self.find_prefix(use)
-        prefix = self._prefixes[id(use.call)]
+        prefix = self._find_prefix(use)
         return f"~{name}" if prefix == "~" else f"{prefix}/{name}" if prefix else name
+
+    def _find_prefix(self, use: FrameworkCall) -> str:
+        key = id(use.call)
+        if key not in self._prefixes:
+            self._note_others()
+            self._prefixes[key] = LOST  # as long as it rests on itself
+            self._prefixes[key] = self.find_prefix(use, self)
+        if not self._prefixes[key].startswith(LOST) or not (self.way or self.made):
+            return self._prefixes[key]
+        # It may be known of the objects, or the calls, that this is about.
+        self._note_others()
+        if key in self._asked_prefixes:
+            return LOST
+        self._asked_prefixes.add(key)
+        try:
+            return self.find_prefix(use, self)
+        finally:
+            self._asked_prefixes.discard(key)
 
     def find_setting(self, name: str) -> FlowValue | None:
         """What a launch sets a parameter to; None for nothing. name: in the namespace of its node handle."""
@@ -1392,7 +1440,7 @@ class FlowValues:
         """The uses in functions that run, where it is known which do."""
         if self._works:
             self._works[-1].is_limited = self.within is not None
-        return [use for use in uses if self._runs(use.fn)] if self.within is not None else []
+        return [use for use in uses if self.runs(use.fn)] if self.within is not None else []
 
     @cached_property
     def declared(self) -> dict[str, list[FrameworkCall]]:

@@ -5,11 +5,14 @@ the build farm, which builds packages one by one, or a fresh container after ros
 of the workspace bring.
 """
 
+import posixpath
 import re
 
 from ...model.package import find_folder_role, is_called_example
 from ..vocabulary import Doubt, Need, Package, TargetView
+from .data_files import list_copied
 from .dependants import list_compiled_elsewhere
+from .install_rules import is_installed, may_stay_behind, read_installs
 
 ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program", "environment"))
 """How CMake asks for something, so that the configuration stops without it."""
@@ -107,7 +110,31 @@ def _collect_run_time_doubts(view: TargetView, package: Package, need: Need, nam
     started = need.role == "run" or (need.role == "test" and need.at.path.endswith((".py", ".test")))
     if not wanted or (need.how in _STARTED and not started):
         return (Doubt.DISPENSABLE,)
-    return (Doubt.LATE,)
+    if view.target.ros == 1 or not view.is_available(name) or not _is_reached(view, package, need):
+        return (Doubt.LATE,)
+    # A fresh container has what all packages of the workspace bring, and whoever starts something its command.
+    if view.is_met(need.providers, view.brought_to_workspace) or name in view.list_transitive(["ros2run"]):
+        return (Doubt.LUCKY,)
+    return _collect_unknown_doubts(view, package, need, name)
+
+
+def _is_reached(view: TargetView, package: Package, need: Need) -> bool:
+    """Whether a need is met whenever something that the package installs is started: an installed launch file that
+    starts it in any case, or a program in Python that imports it in any case."""
+    path = need.at.path
+    if need.role != "run" or not need.required:
+        return False
+    if need.how == "launch":
+        installs = read_installs(view, package)
+        installs = list_copied(package) if installs is None else installs
+        return "launch" in posixpath.basename(path) and bool(installs) and is_installed(installs, path)
+    if need.how != "import" or may_stay_behind(view, package, path):
+        return False
+    return path in package.linked.scripts or any(
+        path in file.list_module_paths(posixpath.dirname(setup), module)
+        for setup, file in package.linked.setup
+        for _, module, *_ in file.entry_points
+    )
 
 
 def _collect_include_doubts(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
@@ -137,7 +164,7 @@ def _collect_unknown_doubts(view: TargetView, package: Package, need: Need, name
     if any(debian and not any(map(_LIBRARY.search, debian)) for debian in map(view.list_debs, opaque)):
         return (Doubt.DISPENSABLE,)
     include = need.how == "include" and need.providers[0].kind == "system"
-    bundling = view.unknown_contents.list_unstored(package) if include else ()
+    bundling = view.unknown_contents.list_unread(package) if include else ()
     if opaque or bundling or view.unknown_contents.may_come_along(package, name, need.providers):
         return (Doubt.INCOMPLETE,)
     together = need.role == "test" and not view.roles.farm_makes_tests

@@ -45,6 +45,18 @@ def is_installed(installs: Iterable[Install], path: str) -> bool:
     return False
 
 
+def may_stay_behind(view: TargetView, package: Package, path: str) -> bool:
+    """Whether a Python file counts as installed only since install rules take what is not known: a variable that
+    nothing sets may name it, or not. What a launch file or script starts is there."""
+    installs = read_installs(view, package) or []
+    known = [rule for rule in installs if not any("$" in item for item in rule.items)]
+    inside = package.strip_path(path)
+    by_setup = package.build_type == "catkin" and inside.startswith("src/") and package.has_files("setup.py")
+    if len(known) == len(installs) or by_setup or is_installed(known, path):
+        return False
+    return posixpath.basename(path) not in list_references(view, package, "executable")
+
+
 def list_places(package: Package, installs: Iterable[Install]) -> frozenset[str] | None:
     """The paths in the prefix of all files that install rules copy from the tree, and of their folders; None where
     a rule may put files to places that are not known."""

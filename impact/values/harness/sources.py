@@ -8,7 +8,9 @@ from dataclasses import dataclass, field
 from .cuts import SourceCuts
 from .stubs import StubTable
 
-_OPTIONAL = re.compile(r"\s+ri::(?:name_member|fill_state|watch_member|forget|forget_cut|make_member|set_member)\(")
+_OPTIONAL = re.compile(
+    r"\s+ri::(?:name_member|fill_state|fill_rising|watch_member|forget|forget_cut|make_member|set_member)\("
+)
 
 
 @dataclass

@@ -26,12 +26,21 @@ _KINDS = {
 
 class CallbackCode(NamedTuple):
     """Where a callback stands. name: dotted from its module on: `Driver.on_command`. message: `package/Name`, empty for
-    a timer."""
+    a timer. joined: the types of all messages that a synchronizer gives it, empty where it is given one; place: of this
+    one among them."""
 
     module: ModuleCode
     name: str
     line: int
     message: str
+    joined: tuple[str, ...] = ()
+    place: int = 0
+
+    def list_messages(self) -> list[tuple[str, str]]:
+        """The messages that it is given: path of the input, type."""
+        if not self.joined:
+            return [("msg", self.message)] if self.message else []
+        return [("msg" if at == self.place else f"msg{at + 1}", type_) for at, type_ in enumerate(self.joined)]
 
 
 def explore_callback(
@@ -89,8 +98,8 @@ def _take_way(
         _forget_preparation(run)
         watch.start(node, function)
         given: list[Any] = [] if node is None else [node]
-        if callback.message:
-            given.append(messages.make_input(run, callback.message, "msg"))
+        for path, type_ in callback.list_messages():
+            given.append(messages.make_input(run, type_, path) if type_ else Opaque(path))
         machine.is_quiet = False
         run.is_preparing = False
         machine.call_function(function, [*given, *_make_others(function, len(given))], {})

@@ -14,7 +14,7 @@ from typing import Any
 
 import z3
 
-from . import arrays, operators, texts
+from . import arrays, operators, rotations, texts
 from .messages import Messages
 from .modules import Handle, KnownMethod, ModuleCode, Outside, PythonClass, PythonFunction, PythonObject, TimeValue
 from .terms import (
@@ -197,7 +197,11 @@ def call_outside(machine: Machine, name: str, given: list[Any], named: dict[str,
         return Handle("client")
     if name in _QUIET:
         return Opaque(name)
-    if name.partition(".")[0] in _COMPUTES:
+    if (turned := rotations.call_rotation(run, name, given)) is not None:
+        return turned
+    if name in _MESSAGE_MOMENTS and given:
+        return _read_moment(machine, name, given[0])
+    if name.partition(".")[0] in _COMPUTES or name.startswith("tf.transformations."):
         return _compute_outside(machine, name, given)
     own = getattr(builtins, name.removeprefix("builtins."), None)
     if isinstance(own, type) and issubclass(own, BaseException):
@@ -287,6 +291,20 @@ def _make_moment(machine: Machine, name: str, given: Sequence[Any], named: dict[
         return Opaque(name)
     seconds, more = given[0], given[1] if len(given) > 1 else 0
     return TimeValue(round(seconds * 1e9) + int(more), is_span)
+
+
+_MESSAGE_MOMENTS = frozenset(("rclpy.time.Time.from_msg", "rclpy.duration.Duration.from_msg"))
+
+
+def _read_moment(machine: Machine, name: str, message: Any) -> TimeValue:
+    """The moment that a message holds. Source: rclpy/time.py, which refuses moments before the first one."""
+    moment = read_time(machine, message)
+    is_span = "uration" in name
+    if not is_span and isinstance(message, Record):
+        seconds = machine.get_member(message, machine.messages.list_fields(message.type)[0])
+        if machine.run.decide(operators.compare(ast.Lt, seconds, 0)):
+            raise machine.run.throw("ValueError", "Seconds value must not be negative")
+    return TimeValue(moment.nanoseconds, is_span)
 
 
 def read_time(machine: Machine, value: Any) -> TimeValue:

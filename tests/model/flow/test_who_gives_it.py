@@ -162,12 +162,14 @@ MAIN = """
 
 
 @pytest.mark.parametrize(("handles", "expected"), [
-    (['"~"'], "/gps/fix"), ([""], "/fix"), (['"~"', '"~"'], "/gps/fix"), (['"~"', ""], "?"),
+    (['"~"'], ["/gps/fix"]), ([""], ["/fix"]), (['"~"', ""], ["/gps/fix", "/fix"]),
 ])  # fmt: skip
 def test_a_header_has_the_handle_that_whoever_includes_it_makes(handles, expected):
     mains = {f"gps/main{place}.cpp": MAIN.replace("HANDLE", one) for place, one in enumerate(handles)}
     found = graph({"gps/gps.h": HEADER, **mains}, ros=1)
-    assert {topic for _, topic, _ in ends(found, "publisher")} == {expected}
+    assert {(node, topic) for node, topic, _ in ends(found, "publisher")} == {
+        (f"gps/main{place}", topic) for place, topic in enumerate(expected)
+    }
     assert {(one.name, one.default) for one in found.parameters} == {("rate", "1")}
 
 
