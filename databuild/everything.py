@@ -56,7 +56,8 @@ class Sources(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     Contents indices, by platform (`debian bookworm`). apt: an apt configuration with folders of its own, by release
     of Debian. gcc, python: a folder of unpacked packages, by version. stubs: folders `stdlib` of typeshed, oldest
     first. commands: folders of packages that define CMake commands. pypi: whether pip may download wheels.
-    opencv: the folder `cv2` of an unpacked wheel of opencv-contrib-python."""
+    opencv: the folder `cv2` of an unpacked wheel of opencv-contrib-python. release_tags: whether what ROS packages lost
+    at release tags is read anew, which nobody has reviewed then."""
 
     rosdistro: str = ""
     meta_ros: str = ""
@@ -72,6 +73,7 @@ class Sources(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     includes: IncludeSources = IncludeSources()
     pypi: bool = False
     opencv: str = ""
+    release_tags: bool = False
 
 
 class BuildStep(NamedTuple):
@@ -236,7 +238,7 @@ STEPS = (
     BuildStep("components", ("components.json.zst",), (), _build_components),
     BuildStep("release-tags", ("changes_ros_tags.json.zst",), ("surfaces",),
          lambda sources, data, own: _call("databuild.release_tags", sources.clones, own, "--output", data)
-         if sources.clones else None),
+         if sources.clones and sources.release_tags else None),
     BuildStep("includes", ("includes.json.zst",), ("surfaces",), _build_includes),
     BuildStep("pypi", ("changes_pypi.json.zst",), (),
          lambda sources, data, own: _call("databuild.pypi", own, "--output", data) if sources.pypi else None),
@@ -288,6 +290,7 @@ def read_sources(file: Path) -> Sources:
         ),
         pypi=named.pypi,
         opencv=locate(named.opencv),
+        release_tags=named.release_tags,
     )
 
 

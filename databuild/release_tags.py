@@ -10,7 +10,8 @@ it, as far as they are known, and where the comparison is sure; one that several
 without its scope, is left out, and so is what stored surfaces, or the table of interfaces, tell (superseded.py).
 
 WORK keeps what was read of each clone, so that a run that was stopped goes on with the next one. Rows of repositories
-that no clone is of stay as they are.
+that no clone is of stay as they are. Nobody reads what this makes row by row: names of libraries that a repository
+holds a copy of are among them.
 """
 
 from __future__ import annotations
@@ -51,8 +52,10 @@ _KINDS = {"header": ("header-removed", "header-renamed"), "c++": ("api-removed",
           "python": ("python-removed", "python-removed"), "command": ("cmake-removed", "cmake-removed"),
           "target": ("cmake-removed", "cmake-removed")}  # fmt: skip
 """Sides of a package to the kinds of rows: of what is gone, and of what has another name in another place."""
-_INNER = re.compile(r"(?:^|[/:._])(?:detail|details|internal|impl|private|tests?|_\w*)(?:[/:._]|$)|_(?:H|HPP|H_|HPP_)\Z"
-                    r"|_INCLUDED_*\Z")  # fmt: skip
+_INNER = re.compile(
+    r"\w_\Z|(?:^|[/:._])(?:detail|details|internal|impl|private|tests?|_\w*)(?:[/:._]|$)|_(?:H|HPP|H_|HPP_)\Z"
+    r"|_INCLUDED_*\Z"
+)
 _AT_MOST = 60
 """States of a clone that are read, the newest: what is older than all surfaces by more is of no use any longer."""
 
@@ -136,8 +139,7 @@ def _find_loss(line: Line, side: str, name: str, events: Sequence[ChangeEvent]) 
     gone, moved = _KINDS[side]
     there = find_standing(side, events, len(line.versions) - 1).there
     instead = next((one.instead for event in reversed(events) for one in event.reported if one.instead), "")
-    warned = next((line.versions[event.place] for event in events
-                   if any(one.kind == "deprecated" for one in event.reported)), "")  # fmt: skip
+    warned = next((line.versions[event.place] for event in events if _is_deprecated(event)), "")
     if there:
         if warned and instead != name:
             yield gone, "", warned, instead
@@ -149,6 +151,12 @@ def _find_loss(line: Line, side: str, name: str, events: Sequence[ChangeEvent]) 
     removed = line.versions[last.place]
     elsewhere = any(one.moved_to or one.kind == "moved" for one in last.reported)
     yield moved if elsewhere and new else gone, removed, warned if warned != removed else "", new
+
+
+def _is_deprecated(event: ChangeEvent) -> bool:
+    """Whether a thing as a whole warns since an event, not only one of the functions that are called so."""
+    warns = any(one.kind == "deprecated" for one in event.reported)
+    return warns and (event.has is None or event.has.deprecated is not None)
 
 
 _GONE = ("removed", "moved")

@@ -22,7 +22,9 @@ Use instead
 
 Not reported
     Packages of the workspace, names listed in `[workspace] private`, dependencies under a condition that does not hold
-    on the target, and packages with a known successor (renamed-package and removed-package say it).
+    on the target, and packages with a known successor (renamed-package and removed-package say it). Assumed is that
+    whatever the distro names at its last sync can be installed from its archive: which packages the build farm failed
+    to build, or leaves out on a platform, is not recorded where it could be read.
 """
 
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
