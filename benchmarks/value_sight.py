@@ -13,7 +13,8 @@ with the most memory that the run on its workspace took, in MB.
 A crash that the reader has not got is judged by hand afterwards: `true` in NAME.verdicts.jsonl (repo, path, line, kind)
 
 usage: value_sight.py draw --set NAME --clones FOLDER [--number 6] [--seed 20]
-       value_sight.py score --set NAME --clones FOLDER --work FOLDER [--replay] [--seconds 20] [--resume]
+       value_sight.py score --set NAME --clones FOLDER --work FOLDER [--replay] [--seconds 20] [--compiling 60]
+                     [--resume]
 """
 
 from __future__ import annotations
@@ -104,6 +105,7 @@ def describe(answer: CallbackAnswer) -> dict:
             if one.crash is not None
         ],
         "unknown": list(answer.unknown)[:5], "seconds": round(answer.seconds, 2),
+        "compiled_in": round(answer.compiled_in, 1), "rounds": answer.rounds,
     }  # fmt: skip
 
 
@@ -128,7 +130,7 @@ def ask(options: argparse.Namespace, system: dict, records: list[dict]) -> list[
     if not folder.exists():
         check_out(clone, system["commit"], folder)
     names = sorted({record["callback"] for record in records})
-    bounds = Bounds(seconds=options.seconds)
+    bounds = Bounds(seconds=options.seconds, compiling=options.compiling)
     try:
         with MemoryWatch() as watch:
             answer = explore_values(
@@ -199,6 +201,7 @@ def main() -> None:
     parser.add_argument("--number", type=int, default=6)
     parser.add_argument("--seed", type=int, default=20)
     parser.add_argument("--seconds", type=float, default=20.0)
+    parser.add_argument("--compiling", type=float, default=60.0, help="seconds of the processor for each source")
     parser.add_argument("--replay", action="store_true")
     parser.add_argument("--resume", action="store_true", help="systems that have an answer already are not asked again")
     options = parser.parse_args()

@@ -32,6 +32,7 @@ _LOOPS = frozenset(("while", "do"))
 _CALLS = re.compile(r"\w\s*[(\[]|\]\s*\(")
 _NAMES = re.compile(r"(?<![\w.>:\"'])(?:this->|self\.)?([A-Za-z_]\w*)(?![\w\"':])")
 """Variables in a condition, without what stands behind a point or in a scope."""
+_RUN_AS_PROGRAM = re.compile(r"__name__\s*==\s*(['\"])__main__\1")
 _CAUGHT = re.compile(r"except (.*)|catch \((.*)\)", re.DOTALL)
 _WORDS = frozenset(("and", "or", "not", "is", "in", "true", "false", "True", "False", "None", "nullptr", "NULL"))
 
@@ -256,17 +257,23 @@ class _Digester:
         fn, code = statement.use.fn, self.join.code
         before, _, name = self.join.calls.get_receiver(statement.use).rpartition(".")
         owner = code.find_owner(fn) if before == "this" and fn.source.facts.language == "python" else None
-        if statement.sites or owner is None or name in self._assigned:
+        if statement.sites or owner is None or {("", name), (owner.key, name)} & self._assigned:
             return False
         whole = all(base in ("", "object") for cls in code.list_bases(owner) for base in cls.facts.bases)
         return whole and owner.key not in code.derived
 
     @cached_property
-    def _assigned(self) -> frozenset[str]:
-        """The last parts of all paths that something is assigned to, or the result of a call is kept in."""
-        functions = self.join.code.functions
-        kept = {get_tail(call.target) for fn in functions for call in fn.facts.calls if call.target}
-        return frozenset(kept | {get_tail(row.target) for fn in functions for row in fn.facts.assignments})
+    def _assigned(self) -> frozenset[tuple[str, str]]:
+        """What something is assigned to, or the result of a call is kept in: members by class and name, with an empty
+        class where they are of another object, or of a class that is not seen."""
+        found: set[tuple[str, str]] = set()
+        for fn in self.join.code.functions:
+            owner = self.join.code.find_owner(fn)
+            key = owner.key if owner is not None else ""
+            for target in (*(row.target for row in fn.facts.assignments), *(call.target for call in fn.facts.calls)):
+                before, _, name = target.rpartition(".")
+                found.add((key if before == "this" else "", name))
+        return frozenset(found)
 
     def _find_owners(self, fn: Fn) -> list[Owner]:
         found: list[Owner] = [one for one in self.running if fn in one.functions]
@@ -361,7 +368,7 @@ class _Digester:
             if unsaid and (lives or (guard.kind in _LOOPS and trigger.kind == "start")):
                 kind = "loop" if trigger.kind == "start" else "thread"
                 start = StatementStart(kind, self._find_rate(guard) or (start.detail if start.kind == kind else ""))
-            if asked:
+            if asked and not _is_program(guard):
                 meaning, names = self.meaning.resolve_guard(guard) if asked == guard.text else ("", ())
                 known = select_given(meaning or asked, given.get((guard.path, guard.of), ()))
                 tried = self._list_tried(guard)
@@ -482,6 +489,11 @@ class _Digester:
                 kind = get_tail(each.value.text).lower() if each.value.text else "rate"
                 return f"{kind} {paces[0]}"
         return ""
+
+
+def _is_program(guard: GuardAt) -> bool:
+    """Whether a guard only asks that the file is run, and not imported."""
+    return guard.kind == "if" and bool(_RUN_AS_PROGRAM.fullmatch(guard.text))
 
 
 def strip_spelling(text: str) -> str:

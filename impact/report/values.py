@@ -109,6 +109,9 @@ def _render_callback(one: CallbackAnswer, everything: bool, style: Style) -> Ite
     yield from lay_out([LinePart(f"ways: {counts}", "dim"), LinePart(f"{one.seconds:.1f} s", "dim")], style, 2, 6)
     for reason, count in sorted(one.unknown.items(), key=lambda row: -row[1])[: None if everything else 3]:
         yield from lay_out([LinePart("unknown:", "warning"), LinePart(f"{reason} ({count})")], style, 2, 6)
+    if one.beyond:
+        text = f"larger {', '.join(one.beyond[:3])} than --array and --text allow may lead to something else"
+        yield from lay_out([LinePart("bound:", "warning"), LinePart(text)], style, 2, 6)
     if one.left:
         yield from lay_out([LinePart("unknown:", "warning"), LinePart(f"{one.left} ways were not ended")], style, 2, 6)
     if one.assumed:
@@ -247,6 +250,7 @@ def _describe_callback(one: CallbackAnswer) -> dict[str, Any]:
         "type": one.message_type, "topics": one.topics, "nodes": one.nodes, "reason": one.reason,
         "ways": {result.value: count for result, count in one.counts.items()}, "left": one.left,
         "seconds": round(one.seconds, 3), "compiled_in": round(one.compiled_in, 3), "rounds": one.rounds,
+        "beyond": one.beyond,
         "fields": [
             {
                 "field": field.path, "kind": field.kind.value,

@@ -150,7 +150,8 @@ class Exploration:
     """All that was found out about one callback. left: ways that were begun and not ended (time or number of paths);
     where it is not 0, nothing is surely ignored. functions: variables that stand for what z3 does not know (the sine of
     a term), with what calculates them. fixed: inputs that have one value, where it was narrowed to that. is_bare:
-    no constructor of the node was run."""
+    no constructor of the node was run. exceeded: inputs, sizes of arrays and texts, that a condition was about which
+    only larger ones fulfil."""
 
     inputs: dict[str, SymbolicInput] = field(default_factory=dict)
     paths: list[CallbackPath] = field(default_factory=list)
@@ -161,6 +162,7 @@ class Exploration:
     functions: dict[str, UnknownFunction] = field(default_factory=dict)
     fixed: Mapping[str, int] = field(default_factory=dict)
     is_bare: bool = False
+    exceeded: frozenset[str] = frozenset()
 
 
 class Witness(NamedTuple):

@@ -857,8 +857,21 @@ def test_a_topic_that_is_not_known_is_no_other_one() -> None:
     assert compare({"talker.cpp": old}, {"talker.cpp": other}) == said
 
 
+def test_that_a_file_is_run_is_no_condition() -> None:
+    program = RUN.replace("BODY", AT_TEN)
+    guarded = program.replace("\nmain()\n", "\nif __name__ == '__main__':\n    main()\n")
+    assert guarded != program
+    assert compare({"run.py": guarded}, {"run.py": program}) == []
+    asked = program.replace("\nmain()\n", "\nif len(sys.argv) == 2:\n    main()\n")
+    assert compare({"run.py": program}, {"run.py": asked}) == [("tightened", "only when `len(sys.argv) == 2` too")]
+
+
 def test_what_nothing_assigns_publishes_nothing() -> None:
     sends = "        self.speak_pub.publish(msg)"
     assert compare_python("        pass", sends) == []
     made = f"        self.speak_pub = make(msg)\n{sends}"
     assert [kind for kind, _ in compare_python("        pass", made)] == ["new"]
+    other = "\n\nclass Other:\n    def __init__(self):\n        self.speak_pub = rospy.Publisher('more', String)\n"
+    assert compare_python(f"        pass{other}", f"{sends}{other}") == []
+    given = "\n\ndef give(one):\n    one.speak_pub = make(one)\n"
+    assert [kind for kind, _ in compare_python(f"        pass{given}", f"{sends}{given}")] == ["new"]

@@ -252,3 +252,23 @@ end:
 """
     (path,) = explore([text], "entry", Bounds(seconds=60), lambda path: path.startswith("/ws/")).paths
     assert (path.result, path.crash) == (result, CrashKind.ENDLESS if step == 0 else None)
+
+
+@pytest.mark.parametrize("asked, exceeded", [("ugt i64 %size, 9", 1), ("ugt i64 %size, 3", 0), ("ugt i64 %size, 2", 0)])
+def test_a_size_that_only_a_larger_array_has(asked, exceeded):
+    text = f"""
+declare i64 @ri_size(ptr, i64)
+@name = constant [2 x i8] c"x\\00"
+define void @entry() {{
+  %size = call i64 @ri_size(ptr @name, i64 3)
+  %more = icmp {asked}
+  br i1 %more, label %yes, label %no
+yes:
+  ret void
+no:
+  ret void
+}}
+"""
+    found = explore([text], "entry", Bounds(seconds=60), lambda path: True)
+    assert len(found.exceeded) == exceeded
+    assert len(found.paths) == (2 if asked.endswith(" 2") else 1)

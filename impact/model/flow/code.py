@@ -39,6 +39,8 @@ _CHANGE_RANGE = frozenset(("transform", "replace", "replace_if", "remove", "remo
 # What says how a parameter is handed over, and nothing of what it is.
 _HANDED_OVER = re.compile(r"\bconst\b|\btypename\b|[&*]")
 _CHANGE_IN_PLACE = ("replace_", "erase_", "trim", "to_lower", "to_upper")
+# Methods of pluginlib's ClassLoader<T> that make a T.
+MAKES_PLUGIN = frozenset(("createInstance", "createSharedInstance", "createUniqueInstance", "createUnmanagedInstance"))
 # Endings of C++ files that hold no declarations for others.
 SOURCES = (".cpp", ".cc", ".cxx", ".c++", ".c", ".cu")
 
@@ -749,6 +751,9 @@ class FlowCode:
         by_path, source = self._constants.get(get_tail(variable.name), {}), fn.source
         if source.facts.language == "python":
             return by_path.get(variable.owner, [])
+        if "::" in variable.name:
+            # `namespace t = robot::topics`
+            variable = variable._replace(name=self.resolve_name(variable.name, source, fn.scope))
         if not by_path:
             return []
         seen = self._seen_files.list_seen(source.path)
@@ -764,6 +769,10 @@ class FlowCode:
             found = (self.list_definitions(names.pop()) if len(names) == 1 else []) or found
         files = {one.path for _, one in found}
         return found if len(files) < 2 or len({constant.value for constant, _ in found}) == 1 else []
+
+    def list_seen_sources(self, path: str) -> list[CodeFile]:
+        """The C++ files that one sees, itself among them."""
+        return [self._by_path[seen] for seen in sorted(self._seen_files.list_seen(path)) if seen in self._by_path]
 
     def list_definitions(self, name: str) -> list[tuple[DataMember, CodeFile]]:
         """What C++ files define under a full name that another declares: a static member, a variable that is extern."""
@@ -852,6 +861,10 @@ class FlowCode:
         if last in ("make_shared", "make_unique") or (last == "create" and "::" in name):
             scope = get_outer(name)
             return self.resolve_written(scope, fn.source, fn.scope) if scope not in ("std", "boost", "") else UNKNOWN
+        if last in MAKES_PLUGIN and "." in name:
+            loader = self.resolve_name_type(name.rpartition(".")[0], fn, depth + 1)
+            if loader.arguments:
+                return self.resolve_written(loader.arguments[0], fn.source, fn.scope)
         for target in self.list_targets(name, fn, depth + 1):
             if target.facts.returns:
                 return self.resolve_written(target.facts.returns, target.source, target.scope)

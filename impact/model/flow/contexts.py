@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from ...facts.flow import FlowCall
 from .code import FlowCode, Fn, Made, Variable
+from .reaching import LOOPS
 from .types import Cls
 from .values import FlowValues
 
@@ -20,11 +21,23 @@ class Contexts:
     def __init__(self, code: FlowCode):
         self.code = code
 
-    def list_contexts(self, fn: Fn, values: FlowValues) -> list[FlowValues]:
-        """What expressions are worth on each way to a function. values: in what runs. It is these alone where there is
-        one way, where none is seen, and where there are too many."""
-        found = list(self._list_ways(fn, values, 0))
+    def list_contexts(self, fn: Fn, guard: int, values: FlowValues) -> list[FlowValues]:
+        """What expressions are worth on each way to a place of a function, in each turn of the loops around. guard: of
+        the place; values: in what runs. It is these alone where there is one way, where none is seen, and where there
+        are too many."""
+        found = [way for turn in self._list_turns(fn, guard, values) for way in self._list_ways(fn, turn, 0)]
         return found if 0 < len(found) <= _MOST else [values]
+
+    @staticmethod
+    def _list_turns(fn: Fn, guard: int, values: FlowValues) -> list[FlowValues]:
+        """The turns of the loops around a place of a function."""
+        found = [values]
+        for place in fn.list_guards_around(guard):
+            row = fn.facts.guards[place]
+            count = values.count_turns(fn, place) if row.kind in LOOPS else 0
+            if count > 1 and (fn.place, row.line) not in values.turns and len(found) * count <= _MOST:
+                found = [one.limit_to_turn(fn, row.line, turn) for one in found for turn in range(count)]
+        return found
 
     def _list_ways(self, fn: Fn, values: FlowValues, depth: int) -> Iterator[FlowValues]:
         number = 0
@@ -56,7 +69,8 @@ class Contexts:
             inside = values.limit_to_calls({**others, **values.way, fn: call})
             objects = list(self._list_objects(fn, inside, held)) if held is not None else []
             # Where its object is made tells no more of who calls it.
-            yield from ((caller, limited) for _, limited in objects or [(caller, inside)])
+            for _, limited in objects or [(caller, inside)]:
+                yield from ((caller, turn) for turn in self._list_turns(caller, call.guard, limited))
 
     def _find_others(self, fn: Fn, held: Variable) -> dict[Fn, FlowCall]:
         """Of the methods of a method's class those that are called once on what a variable holds, with that call."""
@@ -94,7 +108,9 @@ class Contexts:
             constructors = [one for each in chain for one in self.code.list_functions(each) if self._begins(one)]
             if any(one in values.made for one in constructors):
                 continue  # it is told already which objects these are
-            yield row[0], values.limit_to_objects({**values.made, **self.find_made(chain, [row])})
+            limited = values.limit_to_objects({**values.made, **self.find_made(chain, [row])})
+            guard = max(row[0].collect_guards(row[2]), default=-1)
+            yield from ((row[0], turn) for turn in self._list_turns(row[0], guard, limited))
 
     def _select_held(self, rows: list[tuple[Cls, Made]], held: Variable) -> list[tuple[Cls, Made]]:
         """Of places where objects are made those of what a variable holds; none where that is not seen."""

@@ -57,24 +57,34 @@ class HeldList(NamedTuple):
 class Elements:
     """The elements of the lists and dictionaries of a body of code. runs: which functions run; way: the only call
     through which a function is reached; made: by constructor who gives it its arguments, where that is known. given:
-    what a launch makes of an expression; take_turn: of the elements that a loop goes through those of the turn that is
-    looked at."""
+    what a launch makes of an expression; find_turn: the only turn of the loop that begins on a line, None for any."""
 
     def __init__(
         self, code: FlowCode, runs: Callable[[Fn], bool] = lambda fn: True, way: Mapping[Fn, FlowCall] | None = None,
         made: Mapping[Fn, Sequence[Made]] | None = None,
         given: Callable[[FlowExpr, Fn, int], list[ListElement] | None] = lambda value, fn, line: None,
-        take_turn: Callable[[tuple, list[ListElement]], list[ListElement]] = lambda loop, found: found,
+        find_turn: Callable[[Fn, int], int | None] = lambda fn, line: None,
     ):  # fmt: skip
         self.code, self._runs, self._way, self._made = code, runs, way or {}, made or {}
-        self._find_given, self._take_turn = given, take_turn
+        self._find_given, self._find_turn = given, find_turn
         self._left = 0
 
     def list_walked(self, container: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
         """What a loop over a list or dictionary goes through: a pair for each key of a dictionary. None where that is
         not written out."""
         held = self._find_held(container, fn, line)
-        return self._take_turn((fn, line, container), _join_held(held)) if held else None
+        return self._take_turn(held, fn, line) if held else None
+
+    def list_turns(self, container: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
+        """What a loop goes through in its turns, one in each. None where that is not written out in one place."""
+        held = self._find_held(container, fn, line)
+        return list(held[0].elements) if held and len(held) == 1 and held[0].whole else None
+
+    def _take_turn(self, held: list[HeldList], fn: Fn, line: int) -> list[ListElement]:
+        """Of the elements of lists those that the loop which begins on a line goes through: that of its turn alone,
+        where one is chosen."""
+        turn = self._find_turn(fn, line) if len(held) == 1 and held[0].whole else None
+        return _join_held(held) if turn is None else list(held[0].elements[turn : turn + 1])
 
     def select(self, container: FlowExpr, key: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
         """What stands at a place, or at a key, that is a literal. None where that is not written out."""
@@ -167,7 +177,7 @@ class Elements:
         if not held:
             return None
         if key.kind == "other" and not key.text:
-            inner = self._take_turn((fn, line, container), _join_held(held))
+            inner = self._take_turn(held, fn, line)
         else:
             chosen = [_select_one(one, key) if one.whole else None for one in held]
             inner = [one for one in chosen if one is not None]
@@ -180,7 +190,7 @@ class Elements:
         around = {place for guard in fn.collect_guards(line) for place in fn.list_guards_around(guard)}
         loops = [place for place in around if f"{path}.size()" in fn.facts.guards[place].text]
         held = self._list_held(FlowExpr("name", path), fn, line, depth + 1) if len(loops) == 1 else None
-        return self._join_lists(self._take_turn((fn, loops[0], path), _join_held(held)), depth) if held else None
+        return self._join_lists(self._take_turn(held, fn, fn.facts.guards[loops[0]].line), depth) if held else None
 
     def _join_lists(self, elements: Iterable[ListElement], depth: int) -> list[HeldList] | None:
         found: list[HeldList] = []
@@ -267,10 +277,10 @@ class Elements:
     def _find_walked(self, variable: Variable, fn: Fn) -> tuple[str, int] | None:
         """The list or map that an iterator goes through one by one, and the line where it begins."""
         written = [each for writer, each in self.code.list_writes(variable) if writer is fn]
-        if len(written) != 2 or written[0].value.kind != "call" or written[1].operator != "+=":
+        if len(written) != 2 or written[1].operator != "+=":
             return None
-        begun = _BEGIN.fullmatch(written[0].value.text)
-        return (begun[1], written[0].line) if begun else None
+        begun = find_begun(written[0].value)
+        return (begun.text, written[0].line) if begun is not None else None
 
     def _add_put(self, found: list[HeldList], further: list[ListElement], path: str, fn: Fn) -> list[HeldList] | None:
         """Lists with what is put into them afterwards; None where that is not followed."""
@@ -316,6 +326,12 @@ class Elements:
                 yield ListElement(given, giver, line)
             elif default is not None and self._runs(giver):
                 yield ListElement(default, fn, fn.facts.line)
+
+
+def find_begun(value: FlowExpr) -> FlowExpr | None:
+    """The list or map that `list.begin()` goes through; None for all else."""
+    begun = _BEGIN.fullmatch(value.text) if value.kind == "call" else None
+    return FlowExpr("name", begun[1]) if begun else None
 
 
 def _select_holding(

@@ -17,6 +17,7 @@ from ....edges.memory import cache_method
 from ...facts.cpp.names import split_at_commas
 from ...facts.flow import FlowCall, FlowExpr
 from ...facts.python.text import join_dotted
+from ...targets.constants import load_constants
 from .calls import Calls, FrameworkCall
 from .code import FlowCode, Fn, Variable, find_parameter, get_outer, get_tail, is_number
 from .contexts import Contexts
@@ -24,9 +25,10 @@ from .defined import DefinedInterfaces
 from .graph import Role
 from .handles import NodeHandles, join_spaces
 from .modules import CodeFile
+from .outside_constants import OutsideConstants
 from .templates import Templates
 from .types import find_header_interface, find_interface, parse_flow_type
-from .values import LOST, FlowValue, FlowValues, make_sibling
+from .values import LOST, WHICH_TURN, FlowValue, FlowValues, make_sibling
 
 _NOT_YET = frozenset(("", "None", "nullptr"))
 _CONNECTS = ("connectInput", "reset")
@@ -166,7 +168,7 @@ class Sites:
         self.templates = Templates(code)
         self.handles, self.contexts = NodeHandles(calls), Contexts(code)
         values.find_prefix = self.find_prefix
-        values.find_message_text = self.find_message_text
+        values.find_outside_text = self.find_outside_text
 
     @cached_property
     def endpoints(self) -> list[Site]:
@@ -241,8 +243,8 @@ class Sites:
         Where there are several namespaces, it is empty, and the names have theirs. values: what expressions are worth
         where it runs."""
         spaces, names = self._list_spaces(use, values), self._list_written_names(use, values)
-        if len(spaces) > 1 or len(names) > 1:
-            ways = self.contexts.list_contexts(use.fn, values)
+        if len(spaces) > 1 or len(names) > 1 or any(one.reason == WHICH_TURN for one in names):
+            ways = self.contexts.list_contexts(use.fn, use.call.guard, values)
             if len(ways) > 1:
                 rows = [(self._list_spaces(use, way), self._list_written_names(use, way)) for way in ways]
                 if len({tuple(each) for each, _ in rows}) > 1 or len(spaces) > 1:
@@ -250,7 +252,8 @@ class Sites:
                     return "", tuple(dict.fromkeys(found))
                 names = tuple(dict.fromkeys(one for _, own in rows for one in own))
                 known = tuple(one for one in names if one.text is not None)
-                names = known or names[:1] if not any(one.beside for one in names) else names
+                in_part = tuple(one for one in names if one.shown)
+                names = known or in_part or names[:1] if not any(one.beside for one in names) else names
         if len(spaces) > 1:
             return "", self._join_spaces(spaces, names)
         prefix = spaces[0].text or ""
@@ -276,7 +279,10 @@ class Sites:
         for space in spaces:
             for name in names:
                 lost = (space.text or "").startswith(LOST)
-                if name.text is None or name.text[:1] in ("/", "~"):
+                if name.text is None and name.shown and name.shown[:1] not in ("/", "~"):
+                    inside = "" if lost else join_spaces(space, FlowValue(name.shown)).text or ""
+                    found.append(name._replace(shown=inside))
+                elif name.text is None or name.text[:1] in ("/", "~"):
                     found.append(name)
                 elif lost:
                     reason = "the namespace of its node handle is not known"
@@ -420,17 +426,27 @@ class Sites:
                 return self._resolve_interface(kind.arguments[0], fn)
         return ""
 
-    def find_message_text(self, path: str, fn: Fn) -> str | None:
-        """The value of a message's constant that is a string (`Topics::SCAN`, `Topics.SCAN`), None for all else."""
+    def find_outside_text(self, path: str, fn: Fn) -> str | None:
+        """The value of a constant that is a string: of a message (`Topics::SCAN`, `Topics.SCAN`), or of a released
+        package. None for all else."""
+        told = self._find_message_text(path, fn)
+        return self._released.find(path, fn) if told is None else told
+
+    @cached_property
+    def _released(self) -> OutsideConstants:
+        return OutsideConstants(self.code)
+
+    def _find_message_text(self, path: str, fn: Fn) -> str | None:
         head, _, name = path.replace("::", ".").rpartition(".")
-        if not self.defined.texts or not head or head.startswith("this"):
+        if not head or head.startswith("this"):
             return None
         if fn.source.facts.language == "cpp":
             type_ = head.replace(".", "::")
             known = self._resolve_interface(type_, fn) or self._resolve_in_namespaces(type_, fn)
         else:
             known = self._find_imported_type(head, fn.source) or ""
-        return self.defined.texts.get(known, {}).get(name)
+        texts = self.defined.texts.get(known)
+        return texts.get(name) if texts is not None else load_constants().messages.get(known, {}).get(name)
 
     def _resolve_interface(self, type_: str, fn: Fn) -> str:
         return find_interface(self.code.resolve_written(type_, fn.source, fn.scope).name)

@@ -20,9 +20,8 @@ class SettingValues(Protocol):
 
     calls: Calls
 
-    @property
-    def filled(self) -> dict[Variable, list[FrameworkCall]]:
-        """Variables that a call fills with the value of a parameter."""
+    def list_filling(self, variable: Variable) -> list[FrameworkCall]:
+        """The calls that fill a variable with the value of a parameter."""
         ...
 
     def evaluate(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
@@ -90,7 +89,7 @@ class GivenLists:
         for call in fn.facts.calls:
             if get_tail(call.callee) == "get_parameters" and len(call.arguments) == 2 and call.arguments[1] == target:
                 return self._list_below(call.arguments[0], fn)
-        uses = self._values.filled.get(self._code.identify(path, fn), ())
+        uses = self._values.list_filling(self._code.identify(path, fn))
         return self._read(uses[0]) if len(uses) == 1 else None
 
     def _find_text(self, value: FlowExpr, fn: Fn) -> str | None:

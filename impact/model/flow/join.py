@@ -53,6 +53,8 @@ from .names import (
 )
 from .nodes import BuiltPackage, CodeReach, StartableProgram
 from .objects import NodeObjects, make_key
+from .outside import list_outside
+from .plugin_hosts import PluginHosts, select_own
 from .qos import apply_overrides, find_qos, list_overridable
 from .started import Instance, make_instance
 from .types import FlowType, parse_flow_type
@@ -90,7 +92,8 @@ class Running(NamedTuple):
     expressions are worth there; classes: by key. loaded: how the node loads this program, which is a nodelet then.
     objects: of a program that is several nodes the keys of those that this is, as NodeObject has them, None where it is
     one; others: those of its other nodes alone, where this is the first of them, which has all that no key is about.
-    fixed: what a launch does not change of its name, remaps: its own remappings, as NodeObject has them."""
+    fixed: what a launch does not change of its name, remaps: its own remappings, as NodeObject has them. within: of a
+    plugin in the node that loads it, what that runs too; only_if: the condition under which it loads it."""
 
     program: StartableProgram
     node: Node
@@ -103,6 +106,12 @@ class Running(NamedTuple):
     others: frozenset[str] | None = None
     fixed: frozenset[str] = frozenset()
     remaps: tuple[RemappingRule, ...] = ()
+    within: set[Fn] | None = None
+    only_if: str = ""
+
+    def limit_values(self) -> FlowValues:
+        """What expressions are worth in what it runs."""
+        return self.values.run(self.functions if self.within is None else self.within)
 
 
 Owner = Running | Node | None
@@ -137,6 +146,7 @@ class Join:
         self.sites = Sites(self.code, self.calls, self.values, defined or DefinedInterfaces())
         self.reach = CodeReach(self.sites)
         self.objects = NodeObjects(self.calls, self.values, ros)
+        self.hosts = PluginHosts(self.calls, self.plugins)
         self.triggers = group_pairs(self._list_triggers())
         # Of a use it is the same in every node that runs it.
         self._qos: dict[int, Qos | None] = {}
@@ -217,7 +227,7 @@ class Join:
     def _drop_closed(self, running: Running) -> tuple[Running, bool]:
         """A node without what it reaches through branches alone that the launch closes, and without objects that it
         makes in these alone; and whether it is made itself."""
-        values = running.values.run(running.functions)
+        values = running.limit_values()
         cut: dict[Fn, Fn] = {}
         shut_lines: set[str] = set()
         for fn in running.functions & self._asking.keys() if values.settings else ():
@@ -387,13 +397,51 @@ class Join:
     def add_loaded(self, running: Iterable[Running]) -> Iterator[Running]:
         """Nodes, each followed by the nodelets that its program loads into it."""
         programs = [one for one in self.list_running() if one.program.plugin]
-        for one in running:
-            yield one
+        every = list(running)
+        hosted = {id(one): list(self._list_hosted(one)) for one in every}
+        loaded = {part.program for parts in hosted.values() for part in parts if not part.only_if}
+        for one in every:
+            if one.program in loaded and not one.node.name:
+                continue  # it is in the nodes that load it
+            yield one._replace(node=_note_loaded(one.node, hosted[id(one)]))
+            yield from hosted[id(one)]
             for loaded in list_loaded(self.calls, one.functions, one.values, one.node.name):
                 part = next((p for p in programs if self._is_plugin(p.program, loaded.plugin)), None)
                 if part is not None:
                     values = one.values.rename(loaded.name)
                     yield part._replace(node=one.node, values=values, instance=one.instance, loaded=loaded)
+
+    def _list_hosted(self, one: Running) -> Iterator[Running]:
+        """The plugins that a node loads into itself."""
+        if one.program.kind not in ("executable", "component", "nodelet") or not self.plugins:
+            return
+        settings = one.instance.settings if one.instance is not None else {}
+        if one.values.node:
+            below = f"{one.node.name}/"
+            settings = {name[len(below) :]: text for name, text in settings.items() if name.startswith(below)}
+        for load in self.hosts.list_hosted(one.functions, one.values, settings):
+            for part in self.list_running():
+                is_it = self._is_derived(part, load.name) if load.is_base else self._is_plugin(part.program, load.name)
+                if part.program.kind != "plugin" or not is_it or not part.functions:
+                    continue
+
+                def is_named(name: str, program: StartableProgram = part.program) -> bool:
+                    return self._is_plugin(program, name)
+
+                within = one.functions | part.functions
+                values = one.values.apply_launch(
+                    select_own(one.values.settings, is_named), one.values.arguments, one.values.node
+                )
+                for way in self.hosts.list_ways(one.functions, one.values.run(within), part.functions, is_named):
+                    yield part._replace(
+                        node=one.node, values=values.limit_to_calls({**values.way, **way}), instance=one.instance,
+                        within=within, only_if=load.only_if,
+                    )  # fmt: skip
+
+    def _is_derived(self, one: Running, base: str) -> bool:
+        """Whether the class of a plugin derives from one of a name."""
+        named = self.code.classes.get(get_tail(one.program.plugin), ())
+        return any(get_tail(name) == base for cls in named for name in self.code.list_base_names(cls))
 
     def _is_plugin(self, program: StartableProgram, name: str) -> bool:
         """Whether a program is what pluginlib knows by a name."""
@@ -611,9 +659,11 @@ class Join:
             tuple(Unresolved(use.row.does, f"inside `{use.fn.name}`", *_get_place(use)) for use in self.sites.wrapped),
             self._uncompiled,
         )  # fmt: skip
+        known = [one.instance.started for one in running if one.instance is not None]
+        outside = tuple(dict.fromkeys(list_outside(launch, known, self._locate))) if launch is not None else ()
         return Graph(
             owners.list_nodes(), tuple(endpoints), tuple(publishes), tuple(timers), tuple(parameters), coverage, root,
-            rev, self.ros,
+            rev, self.ros, outside,
         )  # fmt: skip
 
     def _list_endpoints(self, owners: _Owners, count: _Count) -> Iterator[Endpoint]:
@@ -726,7 +776,7 @@ class Join:
         """A site as it is for whoever runs it: with the parameters and the arguments that a launch gives."""
         if not isinstance(owner, Running) or site.implied or (owner.values is self.values and self._is_written(site)):
             return site
-        values = owner.values.run(owner.functions)
+        values = owner.limit_values()
         known = self._sites_of.setdefault((id(site.use), bool(values.node)), [])
         for one, is_shared, rests, found in known:
             if (is_shared or one.functions is owner.functions) and values.is_same(rests):
@@ -768,7 +818,8 @@ class Join:
             policies = list_overridable(use) if any(map(_OVERRIDES, owner.values.settings)) else ()
             qos = apply_overrides(qos, topic, site.role, policies, owner.values.settings) if policies else qos
         replaced = "the name is not replaced" if value.how == "partly" else ""
-        conditions = ("" if site.implied else self._describe_condition(use, owner), value.only_if, replaced)
+        loads = owner.only_if if isinstance(owner, Running) else ""
+        conditions = (loads, "" if site.implied else self._describe_condition(use, owner), value.only_if, replaced)
         only_if = _join_conditions(*conditions)
         return Endpoint(
             site.role, node.id if node else "", topic, type_, *_get_place(use), site.written, how, qos,
@@ -787,7 +838,7 @@ class Join:
     def _list_closed(self, use: FrameworkCall, owner: Owner) -> Iterator[str]:
         """The conditions around a call that do not hold in a node as far as is known, or of which that is not known
         though a launch gives what they ask for."""
-        values = owner.values.run(owner.functions) if isinstance(owner, Running) else self.values
+        values = owner.limit_values() if isinstance(owner, Running) else self.values
         for guard, decided in reversed(list(values.decide_guards(use.fn, use.call.guard))):
             if decided.holds is False or (decided.holds is None and decided.is_given):
                 yield spell_condition(guard.kind, guard.text)
@@ -796,7 +847,7 @@ class Join:
         """Whether a node does not come to a call, by what the launch gives that starts it."""
         if not isinstance(owner, Running) or owner.instance is None or use.call.guard < 0:
             return False
-        values = owner.values.run(owner.functions)
+        values = owner.limit_values()
         decisions = (decided for _, decided in values.decide_guards(use.fn, use.call.guard))
         return any(decided.holds is False and decided.is_given for decided in decisions)
 
@@ -804,9 +855,9 @@ class Join:
         """The full name that a site has in a node, how it is known, and why not."""
         node = _get_node(owner)
         instance = owner.instance if isinstance(owner, Running) else None
-        if value.text is None:
+        text = value.text if value.text is not None else value.shown
+        if value.text is None and not text:
             return "", "unresolved", value.reason
-        text = value.text
         loaded = owner.loaded if isinstance(owner, Running) else None
         unknown = f"/<{(node.executable or get_tail(node.plugin)) if node else 'node'}>"
         full = loaded.name if loaded is not None else (node and node.name) or unknown
@@ -840,7 +891,7 @@ class Join:
         except NameRefused as error:
             return "", "unresolved", str(error)
         if is_open(name) or value.how == "partly":
-            return name, "partly", ""
+            return name, "partly", value.reason
         if name != plain:
             return name, "launch", ""
         return name, "given" if site.implied and value.how == "literal" else value.how, ""
@@ -957,6 +1008,12 @@ class _Count:
         else:
             self.resolved += 1
             self.by_default += all(value.how == "default" for site in sites for value in site.names)
+
+
+def _note_loaded(node: Node, parts: Iterable[Running]) -> Node:
+    """A node with the plugins that it loads."""
+    loads = tuple(sorted({f"{part.program.package}/{part.program.plugin}" for part in parts}))
+    return structs.replace(node, loads=loads) if loads else node
 
 
 def _strip_given(start: Started) -> Started:

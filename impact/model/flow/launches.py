@@ -89,8 +89,8 @@ class LaunchedNode(msgspec.Struct, frozen=True):
     uses, before remapping; parameters: those it declares or reads, in ROS 1 by their full names, or as `*/name` where
     the code does not tell the namespace. hidden, hidden_parameters: why these are not all known, and so left empty.
     uncertain: why it may have another name, or may not be started at all. refused: values that it is given and that its
-    parameters do not take. values: those that it is given, by the names of its parameters; without a type where they
-    are not known.
+    parameters do not take. reads_files: it may read its parameter files by itself, too. values: those that it is given,
+    by the names of its parameters; without a type where they are not known.
     """
 
     node: str
@@ -105,6 +105,7 @@ class LaunchedNode(msgspec.Struct, frozen=True):
     uncertain: tuple[str, ...]
     refused: tuple[RefusedValue, ...] = ()
     values: tuple[GivenValue, ...] = ()
+    reads_files: bool = False
 
 
 class Launch(msgspec.Struct, frozen=True):
@@ -301,7 +302,7 @@ def _start_node(
         one.node.id, program, one.program.package, tuple(sorted(names)), tuple(sorted(asked)), renamed, given,
         reasons.names, reasons.parameters, instance.uncertain,
         tuple(_list_refused(join, launch, sources, one, instance, declared)),
-        tuple(_list_values(launch, sources, instance)),
+        tuple(_list_values(launch, sources, instance)), reasons.reads,
     )  # fmt: skip
 
 

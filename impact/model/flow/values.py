@@ -19,11 +19,11 @@ from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number
 from .conditions import ConditionReader, DecidedCondition, is_truth
-from .elements import SETTING, Elements, ListElement
+from .elements import SETTING, Elements, ListElement, find_begun
 from .given_lists import GivenLists
 from .graph import How
 from .literals import spell_number
-from .names import is_open, resolve_ros1_name
+from .names import is_open, make_open_part, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
 from .reaching import LOOPS, FlowValue, ReachingValues
 from .types import split_name
@@ -39,6 +39,8 @@ _MOST = 12
 _MOST_TURNS = 64
 _DEEPEST = 12
 _FAR = 6
+# Names that are known in part, of one endpoint.
+_MOST_IN_PART = 4
 # Up to here it is asked of each value whether its branch is come to.
 _NEAR = 3
 # Expressions looked at for one value, and characters of it: each variable may be written from two others.
@@ -53,7 +55,8 @@ _MOST_KNOWN = 24
 # Calls that give what they are called on, or their first argument, as a string.
 _SAME = frozenset(
     ("c_str", "str", "as_string", "string_value", "value", "get_parameter_value", "strip", "lstrip", "rstrip", "data",
-     "get_value", "to_string", "as_int", "as_bool", "as_double", "as_string_array", "string_array_value")
+     "get_value", "string", "generic_string", "native", "to_string", "as_int", "as_bool", "as_double",
+     "as_string_array", "string_array_value")
 )  # fmt: skip
 _OF_FIRST = frozenset(("resolveName", "resolve_name", "remap_name", "resolve", "string", "str", "String", "move",
                        "forward", "ParameterValue", "expand_topic_or_service_name", "resolve_topic_name",
@@ -65,6 +68,12 @@ _STRING_METHODS = frozenset(
 _LEAST: tuple[How, ...] = ("default", "launch", "given", "literal")
 # Kinds of guards that ask something, and conditions that are a variable alone.
 ASKING = frozenset(("if", "unless", "case"))
+# The place of what a loop walks through, and what counts its turns.
+_EACH = FlowExpr("other")
+_COUNTER = "enumerate"
+WHICH_TURN = "which turn of the loop it is"
+_TOGETHER = "these parts of the name belong together"
+_MEASURES = re.compile(r"([\w.]+)\.size\(\)\Z")
 _FLAG = re.compile(r"(!|not )?\s*\(?((?:self\.|this->|this\.)?[A-Za-z_]\w*)\)?")
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _OF_PAIRS = frozenset(("first", "second"))
@@ -91,23 +100,22 @@ class Work:
     particular makes; makers: who makes the others; made: all of these; is_open: whether a launch gives anything. Where
     nothing asked, made and what is true or false are None, and arguments is UNASKED. higher, lower: by how much the
     number of things that are being evaluated could be larger or smaller without another answer of those that ask for
-    it. walks: the loops of which something is an element, with the number of their turns; crossed: those of them that
-    several parts of one text are elements of; below: the settings below a prefix that were asked for. is_alone: whether
-    nothing else had a part in it that may be otherwise another time. way: that of whoever works it out."""
+    it. turns: those of loops that were asked for, None for any; below: the settings below a prefix that were asked for.
+    is_alone: whether nothing else had a part in it that may be otherwise another time. way, chosen: the calls and the
+    turns of whoever works it out."""
 
     __slots__ = (
-        "arguments", "below", "crossed", "free", "higher", "idle", "is_alone", "is_limited", "is_open", "items",
-        "lines", "lower", "made", "makers", "runs", "settings", "unmade", "walks", "way", "ways",
+        "arguments", "below", "chosen", "free", "higher", "idle", "is_alone", "is_limited", "is_open", "items",
+        "lines", "lower", "made", "makers", "runs", "settings", "turns", "unmade", "way", "ways",
     )  # fmt: skip
 
-    def __init__(self, way: Mapping[Fn, FlowCall]):
-        self.way = way
+    def __init__(self, way: Mapping[Fn, FlowCall], chosen: Mapping[tuple[str, int], int] = {}):
+        self.way, self.chosen = way, chosen
+        self.turns: dict[tuple[str, int], int | None] = {}
         self.items: set[tuple] = set()
         self.lines: set[tuple[Fn, int]] = set()
         self.settings: dict[str, FlowValue | None] = {}
         self.below: dict[str, dict[str, str]] = {}
-        self.walks: dict[tuple, int] = {}
-        self.crossed: set[tuple] = set()
         self.runs: set[Fn] = set()
         self.idle: set[Fn] = set()
         self.free: set[Fn] = set()
@@ -131,6 +139,8 @@ class Work:
         self.free |= other.free
         for fn, call in other.ways.items():
             self.note_way(fn, call)
+        for loop, turn in other.turns.items():
+            self.note_turn(loop, turn)
         self.unmade |= other.unmade
         self.makers.update(other.makers)
         if other.made is not None:
@@ -138,9 +148,6 @@ class Work:
         if other.is_limited is not None:
             self.is_limited = other.is_limited
         self.note_given(other)
-        self.crossed |= other.crossed
-        for loop, count in other.walks.items():
-            self.walks[loop] = max(count, self.walks.get(loop, 0))
         if other.higher - further < self.higher:
             self.higher = other.higher - further
         if other.lower + further < self.lower:
@@ -161,6 +168,11 @@ class Work:
             self.free.add(fn)
         elif self.way.get(fn) is call:
             self.ways[fn] = call
+
+    def note_turn(self, loop: tuple[str, int], turn: int | None) -> None:
+        """Notes the only turn of a loop, other than one that was chosen on the way here."""
+        if turn is None or self.chosen.get(loop) == turn:
+            self.turns[loop] = turn
 
     def note_maker(self, fn: Fn, made: Sequence[Made] | None) -> None:
         """Notes who in particular makes a function's objects."""
@@ -201,19 +213,20 @@ class FlowValues:
         within: Set[Fn] | None = None,
         node: str = "",
         made: Mapping[Fn, Sequence[Made]] | None = None,
+        turns: Mapping[tuple[str, int], int] | None = None,
     ):
         """settings: values of parameters that a launch sets, by name; in ROS 1 by the global name, and node is the full
         name of the node then. arguments: of the command line, without the program's name; None where they are not
         known. way: the only call through which a function is reached, by the function. within: the functions that run,
         all when None. made: by constructor who gives it its arguments, where that is not whoever makes an object of its
-        class."""
+        class. turns: of loops, by the place of their function and their line, the only turn that it is about."""
         self.calls, self.code = calls, calls.code
         self.settings, self.arguments, self.way, self.within = settings or {}, arguments, way or {}, within
-        self.node, self.made = node, made or {}
+        self.node, self.made, self.turns = node, made or {}, turns or {}
         # The namespace of the node handle that a use is called on, and what is known of that, by the call.
         self.find_prefix: Callable[[FrameworkCall, FlowValues], str] = lambda use, values: ""
-        # The value of a message's constant by its path, where it is a string.
-        self.find_message_text: Callable[[str, Fn], str | None] = lambda path, fn: None
+        # The value of a constant of a message or a released package by its path, where it is a string.
+        self.find_outside_text: Callable[[str, Fn], str | None] = lambda path, fn: None
         self._prefixes: dict[int, str] = {}
         self._asked_prefixes: set[int] = set()
         self._left = _MOST_STEPS
@@ -227,14 +240,12 @@ class FlowValues:
         # Values of variables, by all that does not show in what they rest on; and what is being worked out.
         self._known: dict[tuple, list[_Known]] = {}
         self._works: list[Work] = []
-        # Which turn of a loop is looked at.
-        self._turns: dict[tuple, int] = {}
 
     def apply_launch(
         self, settings: Mapping[str, str], arguments: tuple[str, ...] | None = None, node: str = ""
     ) -> FlowValues:
         """The same code where a launch sets parameters and gives arguments; as for FlowValues()."""
-        return self._make_copy(settings, arguments, self.way, self.within, node, self.made)
+        return self._make_copy(settings, arguments, self.way, self.within, node, self.made, self.turns)
 
     def rename(self, node: str) -> FlowValues:
         """The same where the code is a nodelet of another name."""
@@ -244,17 +255,55 @@ class FlowValues:
         """The same code where only some functions run: what others pass to them does not count."""
         known = self._copies.get(id(functions))
         if known is None:
-            known = self._make_copy(self.settings, self.arguments, self.way, functions, self.node, self.made)
+            known = self._make_copy(
+                self.settings, self.arguments, self.way, functions, self.node, self.made, self.turns
+            )
             self._copies[id(functions)] = known  # which keeps the functions, so that nothing else comes by the same id
         return known
 
     def limit_to_calls(self, way: Mapping[Fn, FlowCall]) -> FlowValues:
         """The same code as far as it is reached through some calls, by the function called."""
-        return self._make_copy(self.settings, self.arguments, way, self.within, self.node, self.made) if way else self
+        if not way:
+            return self
+        return self._make_copy(self.settings, self.arguments, way, self.within, self.node, self.made, self.turns)
 
     def limit_to_objects(self, made: Mapping[Fn, Sequence[Made]]) -> FlowValues:
         """The same code in some objects alone. made: who gives their constructors arguments."""
-        return self._make_copy(self.settings, self.arguments, self.way, self.within, self.node, made)
+        return self._make_copy(self.settings, self.arguments, self.way, self.within, self.node, made, self.turns)
+
+    def limit_to_turn(self, fn: Fn, line: int, turn: int) -> FlowValues:
+        """The same code in one turn of the loop that begins on a line of a function."""
+        turns = {**self.turns, (fn.place, line): turn}
+        return self._make_copy(self.settings, self.arguments, self.way, self.within, self.node, self.made, turns)
+
+    def find_turn(self, fn: Fn, line: int) -> int | None:
+        """The only turn of the loop that begins on a line of a function, None for any."""
+        turn = self.turns.get((fn.place, line))
+        if self._works:
+            self._works[-1].note_turn((fn.place, line), turn)
+        return turn
+
+    def count_turns(self, fn: Fn, guard: int) -> int:
+        """How often the loop of a guard is gone through, 0 where that is not written out."""
+        row = fn.facts.guards[guard]
+        beside = [one for one in fn.facts.guards if one.line == row.line and one.kind in LOOPS]
+        if row.kind not in LOOPS or len(beside) > 1:
+            return 0
+        counts: list[int] = []
+        for each in fn.facts.assignments:
+            if each.line != row.line or each.operator not in ("=", "for"):
+                continue
+            container = (_find_walked(each) if each.guard == guard else None) or find_begun(each.value)
+            measured = _MEASURES.search(row.text) if each.value.kind == "number" else None
+            if measured is not None:
+                container = FlowExpr("name", measured[1])
+            elif container is None and each.value.kind == "number":
+                inside = (one.line for one in fn.facts.calls if guard in fn.list_guards_around(one.guard))
+                counts.append(len(self.elements.list_counted(each.target, fn, next(inside, row.line))))
+            if container is not None and container.text != _COUNTER:
+                counts.append(len(self.elements.list_turns(container, fn, each.line) or ()))
+        known = [count for count in counts if count]
+        return min(known, default=0)
 
     def _make_copy(self, *given) -> FlowValues:
         other = FlowValues(self.calls, *given)
@@ -262,10 +311,9 @@ class FlowValues:
             other.__dict__[name] = getattr(self, name)
         other._budget, other._decided = self._budget, self._decided
         other._known, other._works, other._asking = self._known, self._works, self._asking
-        other._turns = self._turns
         other.find_prefix, other._prefixes = self.find_prefix, self._prefixes
         other._asked_prefixes = self._asked_prefixes
-        other.find_message_text = self.find_message_text
+        other.find_outside_text = self.find_outside_text
         return other
 
     def evaluate(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
@@ -277,7 +325,8 @@ class FlowValues:
         beside = [one for one in found if one.beside][:1]
         if known and beside:
             return [*(one._replace(how="partly") for one in known), *beside]
-        return known or found[:1] or [FlowValue(None, "unresolved", "no value is given")]
+        in_part = list({one.shown: one for one in found if one.shown}.values())
+        return known or in_part[:_MOST_IN_PART] or found[:1] or [FlowValue(None, "unresolved", "no value is given")]
 
     def find_only_text(self, value: FlowExpr, fn: Fn) -> str | None:
         """The first text that an expression may be worth, None where something unknown may be in its place."""
@@ -288,50 +337,9 @@ class FlowValues:
         """The same with all that is not known."""
         most = _MOST_STEPS if self._budget[0] > 0 else _FEW_STEPS
         self._left = most
-        outer = dict(self._turns)
-        self._turns.clear()
-        try:
-            found, work = self.record(lambda: list(dict.fromkeys(self._evaluate(value, fn, line, ()))))
-            if work.crossed:
-                found = list(dict.fromkeys(self._list_by_turn(work, value, fn, line)))
-        finally:
-            self._turns.update(outer)
+        found = list(dict.fromkeys(self._evaluate(value, fn, line, ())))
         self._budget[0] -= most - max(self._left, 0)
         return found
-
-    def _list_by_turn(self, work: Work, value: FlowExpr | None, fn: Fn, line: int) -> Iterator[FlowValue]:
-        """The same where several parts of a text are of one turn of a loop each."""
-        loops = sorted(work.crossed, key=str)
-        turns = product(*(range(work.walks[loop]) for loop in loops))
-        for row in islice(turns, _MOST_TURNS):
-            self._turns.update(zip(loops, row, strict=True))
-            try:
-                found = list(self._evaluate(value, fn, line, ()))
-            finally:
-                self._turns.clear()
-            yield from found
-        if next(turns, None) is not None:
-            yield FlowValue(None, "unresolved", "a loop of too many turns", beside=True)
-
-    def take_turn(self, loop: tuple, found: list[ListElement]) -> list[ListElement]:
-        """Of the elements that a loop goes through those of the turn that is looked at."""
-        if self._works and len(found) > 1:
-            walks = self._works[-1].walks
-            walks[loop] = max(len(found), walks.get(loop, 0))
-        turn = self._turns.get(loop)
-        return found if turn is None else found[turn : turn + 1]
-
-    def _note_crossed(self, parts: Iterable[Work]) -> None:
-        """Notes the loops that several parts of a text are elements of. parts: what each of them rests on."""
-        loops = [loop for part in parts for loop in part.walks]
-        if self._works:
-            self._works[-1].crossed.update(loop for loop in loops if loops.count(loop) > 1)
-
-    def _record_parts(self, parts: Iterable[FlowExpr], fn: Fn, line: int, seen: tuple) -> list[list[FlowValue]]:
-        """The first values of each part of a text."""
-        rows = [self.record(lambda part=part: _take_first(self._evaluate(part, fn, line, seen))) for part in parts]
-        self._note_crossed(rests for found, rests in rows if len(found) > 1)
-        return [found for found, _ in rows]
 
     def _evaluate(self, value: FlowExpr | None, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         if value is None:
@@ -396,13 +404,21 @@ class FlowValues:
             yield one if sure or one.how not in ("literal", "given") else one._replace(how="default")
 
     def _evaluate_join(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
-        pieces = self._record_parts(value.parts, fn, line, seen)
+        value = _spell_boost_format(value) or value
+        pieces = [_take_first(self._evaluate(part, fn, line, seen)) for part in value.parts]
+        # Of several pieces with several values each, it is not known which belong together.
+        several = [{one.text for one in piece if one.text is not None} for piece in pieces]
+        if sum(len(texts) > 1 for texts in several) > 1:
+            for piece in (piece for piece, texts in zip(pieces, several, strict=True) if len(texts) > 1):
+                piece[:] = [one._replace(only_if=_join_texts(one.only_if, _TOGETHER)) for one in piece]
         plain = value.text in ("+", "/", "%") and not any(map(_is_string, value.parts))
         for row in islice(product(*pieces), _MOST):
             # Numbers are added; of what may be either, it is not known.
             numbers = plain and all(one.text is not None and is_number(one.text) for one in row)
             counted = numbers and value.text == "+" and any(part.kind == "number" for part in value.parts)
-            if counted:
+            if any(one.text is None for one in row):
+                yield _join_in_part(row, value) if value.text in ("", "+") else _join(row)
+            elif counted:
                 joined = _join(row)
                 yield joined._replace(text=str(sum(int(one.text or "") for one in row)))
             elif numbers:
@@ -450,7 +466,7 @@ class FlowValues:
 
     def record(self, work_out: Callable[[], _Row]) -> tuple[_Row, Work]:
         """What a function gives, and on what that rests."""
-        work = Work(self.way)
+        work = Work(self.way, self.turns)
         self._works.append(work)
         try:
             return work_out(), work
@@ -526,7 +542,7 @@ class FlowValues:
     @cached_property
     def elements(self) -> Elements:
         """What lists and dictionaries of the code hold."""
-        return Elements(self.code, self.runs, self.way, self.made, GivenLists(self).find, self.take_turn)
+        return Elements(self.code, self.runs, self.way, self.made, GivenLists(self).find, self.find_turn)
 
     def _evaluate_chosen(
         self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
@@ -534,6 +550,9 @@ class FlowValues:
         """What stands at a place, at a key, or in each turn of a loop."""
         if index.kind in ("number", "text"):
             found = self.elements.select(container, index, fn, line)
+        elif index.kind == "other" and not index.text and container.text == _COUNTER:
+            yield from self._evaluate_count(container, fn, line, seen)
+            return
         elif index.kind == "other" and not index.text:
             found = self.elements.list_walked(container, fn, line)
             # A loop over a dictionary goes through its keys.
@@ -552,6 +571,26 @@ class FlowValues:
         else:
             yield from self._evaluate_elements(container, fn, line, seen)
 
+    def _evaluate_count(self, container: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
+        """The number of a turn, as `enumerate` counts."""
+        turn = self.find_turn(fn, line)
+        begins = [FlowValue("0")] if not container.parts else list(self._evaluate(container.parts[0], fn, line, seen))
+        for one in begins:
+            known = turn is not None and is_number(one.text or "")
+            unknown = FlowValue(None, "unresolved", WHICH_TURN)
+            yield one._replace(text=str(int(one.text or 0) + (turn or 0))) if known else unknown
+
+    def _list_counted(self, path: str, fn: Fn, line: int) -> list[ListElement]:
+        """The numbers that a variable of a counting loop is in its turns, or in the one that is chosen."""
+        found = self.elements.list_counted(path, fn, line)
+        around = {place for guard in fn.collect_guards(line) for place in fn.list_guards_around(guard)} if found else ()
+        loops = {fn.facts.guards[place].line for place in around if fn.facts.guards[place].kind in LOOPS}
+        for each in fn.assigned.get(path, ()) if loops else ():
+            if each.operator == "=" and each.line in loops:
+                turn = self.find_turn(fn, each.line)
+                return [found[turn]] if turn is not None and turn < len(found) else found
+        return found
+
     def _select_at_each(
         self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
     ) -> list[ListElement]:  # fmt: skip
@@ -563,6 +602,8 @@ class FlowValues:
         found: list[ListElement] = []
         for key in keys:
             chosen = key.text is not None and self.elements.select(container, FlowExpr("text", key.text), fn, line)
+            if not chosen and is_number(key.text or ""):
+                chosen = self.elements.select(container, FlowExpr("number", key.text or ""), fn, line)
             if not chosen:
                 return []
             found += chosen
@@ -635,7 +676,7 @@ class FlowValues:
             yield from self._evaluate_inner(path.removesuffix("()"), fn, line, seen)
             return
         known = self.elements.find_pair(path, fn, line) if parts[-1] in _OF_PAIRS and "." in path else None
-        known = known or (self.elements.list_counted(path, fn, line) if path in fn.locals else None)
+        known = known or (self._list_counted(path, fn, line) if path in fn.locals else None)
         if known:
             for one in known:
                 yield from self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value)))
@@ -660,7 +701,7 @@ class FlowValues:
         found = list(self.evaluate_variable(variable, fn, (*seen, variable), self._find_origins(path, fn), at, line))
         if not found:
             found = list(self._evaluate_declared(path, fn, line, (*seen, variable)))
-        told = None if found else self.find_message_text(path, fn)
+        told = None if found else self.find_outside_text(path, fn)
         if found:
             yield from found
         elif told is not None:
@@ -718,7 +759,7 @@ class FlowValues:
         into before has no more of what its object was made with."""
         key = (variable, fn, origins, line, filled_before, bool(self.node))
         rows = self._known.setdefault(key, [])
-        for known in rows if not self._turns else ():
+        for known in rows:
             if self._holds_again(known, seen):
                 self._left -= known.steps
                 if self._works:
@@ -731,7 +772,7 @@ class FlowValues:
         )
         if self._works:
             self._works[-1].is_alone &= work.is_alone
-        if work.is_alone and self._left >= 0 and not self._turns:
+        if work.is_alone and self._left >= 0:
             within, asking = frozenset(work.items.intersection(seen)), _list_asking(seen, work.lines)
             rows.append(_Known(values, work, within, asking, len(seen), before - self._left))
             del rows[:-_MOST_KNOWN]
@@ -760,6 +801,7 @@ class FlowValues:
             and (not made or rests.unmade.isdisjoint(made))
             and (not rests.makers or all(made.get(fn) == rows for fn, rows in rests.makers.items()))
             and (rests.made is None or rests.made is made)
+            and (not rests.turns or all(self.turns.get(loop) == turn for loop, turn in rests.turns.items()))
             and (rests.arguments is UNASKED or rests.arguments == self.arguments)
             and all(self.list_settings_below(prefix) == given for prefix, given in rests.below.items())
             and (not rests.settings or all(self.find_setting(name) == v for name, v in rests.settings.items()))
@@ -955,12 +997,20 @@ class FlowValues:
         guard = -1 if branch.holds else each.guard
         if each.operator == "+=" and _is_string(each.value) and found.is_counted(each.guard):
             added = list(self._evaluate(each.value, fn, each.line, seen))
-            values = [_join((one.value, more)) for one in found.held[:_MOST] for more in added[:_MOST]][:_MOST]
+            whole = FlowExpr("join", "", (FlowExpr("name", each.target), each.value))
+            rows = [(one.value, more) for one in found.held[:_MOST] for more in added[:_MOST]][:_MOST]
+            values = _mark_unknown(_join_in_part(row, whole) for row in rows)
+        elif each.operator == "/=" and found.is_counted(each.guard):
+            added = list(self._evaluate(each.value, fn, each.line, seen))
+            rows = [(one.value, more) for one in found.held[:_MOST] for more in added[:_MOST]][:_MOST]
+            paths = [(row, posixpath.join(*(one.text or "" for one in row))) for row in rows]
+            joined = ((_join(row), path) for row, path in paths)
+            values = _mark_unknown(one if one.text is None else one._replace(text=path) for one, path in joined)
         elif _mentions(each.value, each.target) and not found.is_counted(each.guard):
             values = [FlowValue(None, "unresolved", f"`{each.target}` is put together in steps", beside=True)]
         else:
             values = _mark_unknown(self._evaluate_written(each, fn, origins, seen))
-        if each.operator in ("=", "+=") and "." not in each.target.removeprefix("this."):
+        if each.operator in ("=", "+=", "/=") and "." not in each.target.removeprefix("this."):
             found.assign(values, guard)
         else:
             found.add(values, guard)
@@ -1031,6 +1081,8 @@ class FlowValues:
             yield from self._evaluate(each.value, writer, each.line, seen)
         elif each.operator == "for":
             yield from self._evaluate_elements(each.value, writer, each.line, seen)
+        elif each.operator == "/=":
+            yield FlowValue(None, "unresolved", f"`{each.target}` is put together in steps", True)
         elif each.operator == "+=":
             # What is counted has other values beside the first.
             counted = each.value.kind == "number"
@@ -1176,7 +1228,7 @@ class FlowValues:
             yield from self._evaluate_string_method(value, fn, line, seen)
             return
         if head and (last in _SAME or (last == "get" and value.receiver is not None and not value.parts)):
-            if value.receiver is not None and value.receiver.kind == "call":
+            if value.receiver is not None and (value.receiver.kind == "call" or head == "()"):
                 yield from self._evaluate(value.receiver, fn, line, seen)
             elif head.endswith("()"):
                 yield from self._evaluate_inner(head.removesuffix("()"), fn, line, seen)
@@ -1212,6 +1264,9 @@ class FlowValues:
         if last == "string" and len(value.parts) > 1:
             yield FlowValue(None, "unresolved", f"what `{value.text}` makes of several values is not followed")
             return
+        if last == "path" and value.text.endswith(("filesystem::path", "fs::path")) and len(value.parts) == 1:
+            yield from self._evaluate(value.parts[0], fn, line, seen)
+            return
         if (last in _OF_FIRST or (last.startswith("create") and "Options::" in value.text)) and value.parts:
             yield from self._evaluate(value.parts[0], fn, line, seen)
             return
@@ -1219,11 +1274,19 @@ class FlowValues:
             for one in self._evaluate(value.parts[0], fn, line, seen):
                 yield one if one.text is None else one._replace(text=make_sibling(one.text, "camera_info"))
             return
+        if last == "getName" and len(value.parts) == 1 and head and self._is_loader(head, fn):
+            for one in self._evaluate(value.parts[0], fn, line, seen):
+                yield one if one.text is None else one._replace(text=re.split(r"[/:]", one.text)[-1])
+            return
         if last == "append" and len(value.parts) == 2 and "names" in value.text:
             first, second = value.parts
             yield from self._evaluate_join(FlowExpr("join", "", (first, FlowExpr("text", "/"), second)), fn, line, seen)
             return
         yield from self._evaluate_inner(value.text, fn, line, seen, value.parts)
+
+    def _is_loader(self, path: str, fn: Fn) -> bool:
+        """Whether a variable is pluginlib's loader, whose getName() strips a name of its package."""
+        return get_tail(self.code.resolve_name_type(path, fn).name) == "ClassLoader"
 
     def _evaluate_string_method(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         """What a method of a string of Python gives, and `os.path.join`."""
@@ -1446,6 +1509,10 @@ class FlowValues:
                 found.setdefault(name.text, []).append(use)
         return found
 
+    def list_filling(self, variable: Variable) -> list[FrameworkCall]:
+        """The calls that fill a variable with the value of a parameter."""
+        return self.filled.get(variable, [])
+
     @cached_property
     def filled(self) -> dict[Variable, list[FrameworkCall]]:
         """Variables that a call fills with the value of a parameter."""
@@ -1462,6 +1529,33 @@ def make_sibling(topic: str, name: str) -> str:
     """A name in the namespace of a topic (image_transport puts camera_info beside the image)."""
     head, slash, _ = topic.rpartition("/")
     return f"{head}{slash}{name}"
+
+
+def _join_in_part(row: tuple[FlowValue, ...], value: FlowExpr) -> FlowValue:
+    """A text that is put together, known in part where a piece of it is not known. value: the expression."""
+    joined = _join(row)
+    if joined.text is not None:
+        return joined
+    parts = zip(row, value.parts, strict=True)
+    shown = "".join(
+        one.text if one.text is not None else one.shown or make_open_part(f"<{_label(part)}>") for one, part in parts
+    )
+    known = _WORD_OR_NUMBER.search(_BRACKETS.sub("", shown)) and len(shown) < _LONGEST_IN_PART and "{" not in shown
+    # What begins with something unknown may be in any namespace.
+    return joined._replace(shown=shown if known and shown[0] != "<" else "")
+
+
+def _label(value: FlowExpr) -> str:
+    """A short name for what is not known."""
+    while value.kind in ("call", "make", "keyword") and len(value.parts) == 1:
+        value = value.parts[0]
+    if value.kind == "index" and value.parts:
+        return _label(value.parts[0])
+    return get_tail(value.text.replace("[]", "").rstrip("().")) or "..."
+
+
+def _join_texts(*texts: str) -> str:
+    return " && ".join(dict.fromkeys(filter(None, texts)))
 
 
 def _join(row: tuple[FlowValue, ...]) -> FlowValue:
@@ -1514,6 +1608,43 @@ def _is_string(value: FlowExpr) -> bool:
     return written or (value.kind == "join" and (not value.text or any(map(_is_string, value.parts))))
 
 
+_BOOST = re.compile(r"%(?:(?P<place>[1-9])%|\|(?P<barred>[1-9])\$[sd]?\||(?P<next>[sd])|(?P<itself>%))")
+
+
+def _spell_boost_format(value: FlowExpr) -> FlowExpr | None:
+    """`boost::format("/a%1%/%s") % b % c` as a text that is put together; None for all else, and for other formats."""
+    if value.text != "%":
+        return None
+    given: list[FlowExpr] = []
+    while value.kind == "join" and value.text == "%" and value.parts:
+        given[:0] = value.parts[1:]
+        value = value.parts[0]
+    written = value.parts[0] if value.parts else None
+    if value.kind not in ("call", "make") or get_tail(value.text) != "format" or len(value.parts) != 1:
+        return None
+    if written is None or written.kind != "text":
+        return None
+    pieces: list[FlowExpr] = []
+    at = number = 0
+    for found in _BOOST.finditer(written.text):
+        pieces.append(FlowExpr("text", written.text[at : found.start()]))
+        at = found.end()
+        if found["itself"]:
+            pieces.append(FlowExpr("text", "%"))
+            continue
+        place = int(found["place"] or found["barred"] or 0) - 1 if not found["next"] else number
+        number += bool(found["next"])
+        if place >= len(given):
+            return None
+        pieces.append(given[place])
+    pieces.append(FlowExpr("text", written.text[at:]))
+    plain = "%" not in "".join(one.text for one in pieces[::2])
+    return FlowExpr("join", "", tuple(one for one in pieces if one.kind != "text" or one.text)) if plain else None
+
+
+_WORD_OR_NUMBER = re.compile(r"\w")
+_BRACKETS = re.compile(r"<[^<>]*>")
+_LONGEST_IN_PART = 200
 _COUNTED = re.compile(r"0?[0-9]{0,2}d?")
 
 
@@ -1570,6 +1701,15 @@ def _list_turns(rows: Iterable[Assignment], fn: Fn, line: int, around: Sequence[
 def _begins_turn(each: Assignment, fn: Fn) -> bool:
     guard = fn.facts.guards[each.guard]
     return guard.kind == "for" and guard.line == each.line
+
+
+def _find_walked(each: Assignment) -> FlowExpr | None:
+    """What the loop walks through of which an assignment begins the turns; None for all else."""
+    value = each.value
+    if value.kind == "index" and len(value.parts) == 2 and value.parts[1] != _EACH:
+        value = value.parts[0]
+    walks = value.kind == "index" and len(value.parts) == 2 and value.parts[1] == _EACH
+    return value.parts[0] if walks else None
 
 
 def _is_declared_on(each: Assignment, line: int) -> bool:

@@ -17,6 +17,8 @@ def list_refused(view: TargetView, package: Package, *kinds: str) -> Iterator[Re
     for refused in package.build.refused:
         if refused.kind not in kinds or (refused.kind in _HIDDEN and package.build.may_add_targets):
             continue
+        if "$" in refused.name and refused.kind != "no value":
+            continue  # what a variable stands for that nothing which was read sets is not known
         # In other branches a target is made on other machines alone.
         distro = any("ROS_DISTRO" in condition.text for way in refused.ways for condition in way)
         if refused.kind == "branch" and (any(map(view.applies, refused.ways)) or not distro):

@@ -19,13 +19,13 @@ Severity
     something declared is not known, no version of that in any distro does. What CMake is asked for where tests are
     built counts, since it is asked whenever the package is configured, and so do tests of ROS 2, which are compiled
     along. In ROS 2 also what a program in Python imports, or an installed launch file starts, in any case, and no
-    package of the workspace brings. warning: environment variables, tests of ROS 1, other imports and launch files,
-    settings, the tool of the build type, installed headers that nothing here compiles, or where a dependency is known
-    nowhere and may bring it (a package named like an interface package may provide interfaces). note: conditional
-    code, examples (installed ones too, in what they import and start), documentation, files that nothing compiles, and
-    all but the first of more than five imports, of several in tests, or of more than five packages that launch files
-    start, which a package does not declare; further packages that lack the same, and in ROS 1 all but the first of
-    these in the workspace.
+    package of the workspace brings, where at most five such are missing. warning: environment variables, tests of ROS
+    1, other imports and launch files, settings, the tool of the build type, installed headers that nothing here
+    compiles, or where a dependency is known nowhere and may bring it (a package named like an interface package may
+    provide interfaces). note: conditional code, examples (installed ones too, in what they import and start),
+    documentation, files that nothing compiles, or is known to install, and all but the first of more than five imports,
+    of several in tests, or of more than five packages that launch files start, which a package does not declare;
+    further packages that lack the same, and in ROS 1 all but the first of these in the workspace.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
@@ -80,7 +80,11 @@ def undeclared_package(view: TargetView, package: Package):
     # Of more things that a package runs with and does not declare, the first is reported, best such as the target has.
     firsts = [(*_find_gravest(view, package, name, needs), name) for name, needs in missing.items()]
     firsts.sort(key=lambda first: (not view.is_available(first[2]), make_sort_key(first[0])))
+    # Where so many are missing, those who run the package set their machines up by other means than its manifest.
+    habit = sum(first.how not in (*ASKED, "include") for first, _, _ in firsts) > _FEW
     for first, doubts, name in firsts:
+        if habit and first.how not in (*ASKED, "include"):
+            doubts = (*doubts, Doubt.LUCKY)
         condition = next((d.condition for d in package.manifest.dependencies if d.name == name and d.condition), "")
         if condition and "$ROS_" not in condition:
             doubts = (*doubts, Doubt.CONDITIONAL)  # whoever uses it may set the variable

@@ -29,7 +29,7 @@ from collections.abc import Iterator, Mapping
 from ...model.package import find_folder_role
 from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .data_files import list_copied
-from .install_rules import is_installed, list_places, list_references, read_installs
+from .install_rules import LAUNCH_FILE, is_installed, list_places, list_references, read_installs
 
 _OPENED = "`{file}` is opened through the package's share folder ({opener}) but is not installed"
 _LAUNCHED = "`{file}` cannot be launched: the folder `{subject}` is not installed"
@@ -141,10 +141,6 @@ def _lies_in(places: frozenset[str] | None, package: str, inside: str) -> bool:
     return places is not None and not places.isdisjoint((f"share/{package}/{inside}", f"lib/{package}/{name}"))
 
 
-# Launch files of ROS 2, which `ros2 launch` finds in the share folder alone.
-_LAUNCH = re.compile(r"[._]launch\.(?:py|xml|ya?ml)\Z")
-
-
 def _find_launch_file(package: Package, installs) -> str:
     """Where no rule installs any file of the folder of launch files, one in it that starts or opens something: in
     ROS 1, which finds them in the source space too, an installed program of the package, or anything where other
@@ -160,6 +156,6 @@ def _find_launch_file(package: Package, installs) -> str:
     for use in package.linked.references:
         path, r = use.at.path, use.reference
         own = siblings or ((r.kind, r.package) == ("executable", package.name) and r.name in programs)
-        if use.role == "run" and path in files and (own or (not catkin and _LAUNCH.search(path))):
+        if use.role == "run" and path in files and (own or (not catkin and LAUNCH_FILE.search(path))):
             return package.strip_path(path)
     return ""

@@ -262,6 +262,11 @@ class Workshop:
     def _list_flags(self, unit: SourceUnit) -> list[str]:
         folders = [*([str(self.boost)] if unit.boost else []), str(self.include)]
         folders += map(str, list_folders(self.definitions.ros))
+        if unit.is_c:
+            given = [each for each in self._list_macros(unit) if each.startswith(("-D", "-U", "-w"))]
+            given += [f"-D{each}" for each in unit.definitions]
+            folders += [*unit.folders, *self._folders]
+            return ["-x", "c", "-std=gnu11", *given, *(f"-I{each}" for each in folders)]
         flags = ["-x", "c++", *self._list_macros(unit)]
         flags += [f"-D{each}" for each in unit.definitions]
         flags += sorted(unit.stubs.flags) if unit.stubs is not None else []
@@ -306,6 +311,8 @@ class Workshop:
         folder = self.folder / unit.name
         folder.mkdir(parents=True, exist_ok=True)
         path = folder / "harness.cpp"
+        if unit.is_c:
+            return self._prepare_plain(unit, clang, path)
         unit.stubs = StubTable(self._read_line, self._is_own, self._list_bases)
         unit.cuts = SourceCuts(self.root, folder)
         self._cuts = unit.cuts
@@ -346,6 +353,21 @@ class Workshop:
                 break
             self._store(unit, path)
         raise CannotCompile(self._describe(first) if first is not None else "does not compile")
+
+    def _prepare_plain(self, unit: SourceUnit, clang: str, path: Path) -> Path:
+        """A unit that is compiled as it is, with headers that are found in the workspace, or not at all."""
+        self._store(unit, path)
+        for _ in range(_ROUNDS_OF_HEADERS):
+            run = self._check(unit, clang, path)
+            if run.status == 0:
+                return path
+            errors = parse_errors(run.errors)
+            missing = [each.text.split("'")[1] for each in errors if each.text.endswith("file not found")]
+            if not missing or not all(self._find_own(each) for each in missing):
+                raise CannotCompile(self._describe_run(run))
+            for header in missing:
+                self._make_header(header, unit)
+        raise CannotCompile("its headers are not found")
 
     def _drop_parts(self, unit: SourceUnit, errors: Sequence[CompileError], write, path: Path) -> None:
         """Leaves the parts of a unit out that have errors: one line where that may be left out on its own."""

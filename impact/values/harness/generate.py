@@ -94,8 +94,12 @@ class HarnessWriter:
     def write_further(self, name: str, source: str) -> SourceUnit:
         """A unit of another source file, whose functions a harness calls."""
         standard, definitions = self.reader.find_standard(source)
+        folders = (f"{self.root}/{source.rpartition('/')[0]}",)
+        if source.endswith(".c"):
+            text = f'#define main ri_main_of_{name}\n#include "{self.root}/{source}"\n'
+            return SourceUnit(name, text, {}, standard, definitions, folders, is_c=True)
         text = f'#include "ri_core.hpp"\n#define main ri_main_of_{name}\n#include "{self.root}/{source}"\n'
-        return SourceUnit(name, text, {}, standard, definitions, (f"{self.root}/{source.rpartition('/')[0]}",))
+        return SourceUnit(name, text, {}, standard, definitions, folders)
 
     # Ways
 
@@ -385,7 +389,10 @@ def _write_state(members: Sequence[ObservedMember], object_: str, prefix: str, e
         name = each.name
         make = "true" if every else "false"
         lines.append(f'  ri::name_member({object_}{name}, "{get_tail(name)}", {make});')
-        if each.is_state:
+        if each.is_state and each.least is not None and not every:
+            # What the constructor leaves is the least value, too.
+            lines.append(f'  ri::fill_rising({object_}{name}, "{prefix}{get_tail(name)}", {each.least});')
+        elif each.is_state:
             lines.append(f'  ri::fill_state({object_}{name}, "{prefix}{get_tail(name)}");')
     lines += [f'  ri::watch_member({object_}{e.name}, "{get_tail(e.name)}");' for e in members if e.is_read]
     return lines

@@ -221,8 +221,8 @@ class HarnessSession:
         units, texts, left_out = [unit], [text], {}
         seen, left = {source}, [text]
         while left and len(units) <= _FURTHER:
-            symbols = {each[1] for each in _DECLARED.findall(left.pop()) if each[1].startswith("_Z")}
-            for path in self.reader.list_defining(symbols):
+            symbols = {each[1] for each in _DECLARED.findall(left.pop())}
+            for path in self.reader.list_defining(symbols, source):
                 if path in seen or len(units) > _FURTHER:
                     continue
                 seen.add(path)

@@ -419,6 +419,7 @@ class Executor:
             if model is _UNDECIDED:
                 raise self.make_unknown(_NO_ANSWER)
             if model is None:
+                self.solving.note_impossible(condition)
                 self._note_known(state, condition, False)
                 state.taken = (*state.taken, False)
                 return False
@@ -439,6 +440,8 @@ class Executor:
             self._note_known(twin, condition, not answer)
             self.pending.append(twin)
             self._add_condition(state, first)
+        else:
+            self.solving.note_impossible(second)
         self._note_known(state, condition, answer)
         state.taken = (*state.taken, answer)
         return answer
@@ -596,6 +599,7 @@ class Executor:
         self._exclude_early()
         self.exploration.inputs.update(self.solving.inputs)
         self.exploration.functions.update(self.solving.derived)
+        self.exploration.exceeded = frozenset(self.solving.exceeded)
         self.exploration.instructions = self.instructions
         self.exploration.seconds = time.monotonic() - self.started
         return self.exploration

@@ -27,7 +27,7 @@ _DEEPEST = 12
 
 class ReplayPlace(NamedTuple):
     """Where a callback is found on the disk. root: of the workspace; folders: where Python looks for its modules; file:
-    of the module. given: path and type of the messages that it is given."""
+    of the module. given: path and type of the messages that it is given. replies: what it returns is an answer."""
 
     root: Path
     folders: tuple[Path, ...]
@@ -35,6 +35,7 @@ class ReplayPlace(NamedTuple):
     function: str
     given: tuple[tuple[str, str], ...]
     file: Path
+    replies: bool = False
 
 
 def replay_witness(
@@ -45,7 +46,7 @@ def replay_witness(
     task = {
         "roots": [str(place.root)], "folders": [str(one) for one in place.folders], "module": place.module,
         "file": str(place.file),
-        "function": place.function,
+        "function": place.function, "replies": place.replies,
         "messages": [_build_message(messages, type_, path, witness.values, 0) for path, type_ in place.given],
         "members": _list_members("this.", witness.values, kinds),
         "globals": _list_members("global.", witness.values, kinds),

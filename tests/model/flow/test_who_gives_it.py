@@ -101,7 +101,7 @@ CAMERA = """
         ("", [("/camera/info", "literal")]),
         ('read<std::string>(other_, "other", "b"); read<std::string>(name_, "name", "a");', [("/a/info", "default")]),
         # Beside what is not known the name is one that may be replaced.
-        ("ask(name_);", [("", "unresolved"), ("/camera/info", "partly")]),
+        ("ask(name_);", [("/<name_>/info", "partly"), ("/camera/info", "partly")]),
     ],
 )
 def test_what_a_function_writes_into_its_reference_takes_the_place_of_the_beginning(read, expected):
