@@ -1380,7 +1380,9 @@ def is_modelled(command: str, conditions: Iterable[Condition]) -> bool:
     return command in HANDLERS or command in WRAPPERS or is_for_tests(conditions)
 
 
-def calls_unmodelled(build: Build | Interpreter) -> bool:
+def calls_unmodelled(build: Build | Interpreter, for_tests: bool = False) -> bool:
     """Whether a package calls what may make anything, such as headers: a function of another package of which it is not
-    known what it does."""
-    return any(use.kind == "command" and not is_modelled(use.name, use.conditions) for use in build.uses)
+    known what it does. for_tests: what is called for tests alone counts too, as what tests use may come of it."""
+    return any(
+        use.kind == "command" and not is_modelled(use.name, () if for_tests else use.conditions) for use in build.uses
+    )

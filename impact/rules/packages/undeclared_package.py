@@ -23,9 +23,9 @@ Severity
     1, other imports and launch files, settings, the tool of the build type, installed headers that nothing here
     compiles, or where a dependency is known nowhere and may bring it (a package named like an interface package may
     provide interfaces). note: conditional code, examples (installed ones too, in what they import and start),
-    documentation, files that nothing compiles, or is known to install, and all but the first of more than five imports,
-    of several in tests, or of more than five packages that launch files start, which a package does not declare;
-    further packages that lack the same, and in ROS 1 all but the first of these in the workspace.
+    documentation, files that nothing compiles, or is known to install, and all but the first of more than five imports
+    (in ROS 1 and in tests, of several), or packages that launch files start, which a package does not declare, and
+    further packages that lack the same.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
@@ -56,7 +56,7 @@ from .undeclared_needs import declare_need, describe_need, find_kind, find_undec
 
 _FEW = 5
 """So many undeclared imports, or packages that launch files start, are each reported in ROS 2. Who runs ROS 1 has most
-of it at hand, and its manifests were rarely complete: there one of the workspace tells of all."""
+of it at hand, and its manifests were rarely complete: there one of a package tells of all."""
 _NOWHERE, _CONDITION = ", nowhere", ", condition"
 
 
@@ -113,12 +113,11 @@ def _find_gravest(view: TargetView, package: Package, name: str, needs: list[Nee
 
 def _find_together(view: TargetView, need: Need, name: str) -> tuple[Together, ...]:
     """Launch files and modules are used one by one, and whoever declares the first looks for the others: those of the
-    package, and in ROS 1 of the workspace; of what several packages lack, those of the others."""
+    package and, of what several packages lack, those of the others."""
     if need.how in (*ASKED, "include"):
         return ()
-    if view.target.ros == 1:
-        return (Together("started, and not declared", everywhere=True),)
-    apart = need.how in ("setting", "shell", "import")
-    cause = "test" if need.role == "test" else need.how if apart else "started"
-    few = 1 if need.role == "test" else _FEW
+    early = view.target.ros == 1
+    apart = need.how in ("setting", "shell") or (need.how == "import" and not early)
+    cause = "test" if need.role == "test" and not early else need.how if apart else "started"
+    few = 1 if early or need.role == "test" else _FEW
     return (Together(cause, few=few), Together(f"`{name}` is not declared, {cause}", everywhere=True))
