@@ -83,6 +83,28 @@ def pytest_collection_finish(session: pytest.Session) -> None:
     gc.set_threshold(200_000, 20, 100)
 
 
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown() -> None:
+    """Looks for cycles once tests have left many files open: with thresholds that high, what a few hundred of them
+    leave to garbage collection would use up the 1,024 files that many machines allow a process."""
+    global _open_files_allowed
+    if _count_open_files() > _open_files_allowed:
+        gc.collect()
+        _open_files_allowed = _count_open_files() + _MORE_FILES
+
+
+_MORE_FILES = 100
+_open_files_allowed = _MORE_FILES
+
+
+def _count_open_files() -> int:
+    """How many files the process holds open; 0 where the system does not say."""
+    try:
+        return len(os.listdir("/proc/self/fd"))
+    except OSError:
+        return 0
+
+
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
     """With -n auto one process more than there are cores: some tests wait for a time-out or for a process that they

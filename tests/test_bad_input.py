@@ -5,6 +5,7 @@ Every case stands beside a healthy package with one known finding, which has to 
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import sqlite3
@@ -863,7 +864,7 @@ def findings(process: subprocess.Popen) -> set[tuple[str, str]]:
 
 def rows(cache: Path) -> int:
     try:
-        with sqlite3.connect(f"file:{cache}/facts.sqlite?mode=ro", uri=True) as database:
+        with contextlib.closing(sqlite3.connect(f"file:{cache}/facts.sqlite?mode=ro", uri=True)) as database:
             return database.execute("SELECT count(*) FROM facts").fetchone()[0]
     except sqlite3.Error:
         return 0

@@ -91,7 +91,8 @@ def test_whose_a_file_is(tmp_path, made_elf, marks, path, package):
     for mark in marks:
         put(tmp_path / "install", mark)
     put(tmp_path / "install", path, made_elf("EM_X86_64", ["libc.so.6"]))
-    found = read_installed(tmp_path / "install", Store(tmp_path / "cache"))
+    with Store(tmp_path / "cache") as store:
+        found = read_installed(tmp_path / "install", store)
     assert [(binary.path, binary.package) for binary in found.binaries] == [(path, package)]
 
 
@@ -106,7 +107,8 @@ def test_whose_a_library_is_is_told_by_what_cmake_builds(tmp_path, made_elf, che
 def test_whose_a_library_is_is_told_by_the_list_of_what_was_installed(tmp_path, made_elf):
     put(tmp_path, "build/winch/install_manifest.txt", f"{tmp_path}/install/lib/libropes.so\n".encode())
     put(tmp_path / "install", "lib/libropes.so", made_elf("EM_X86_64"))
-    found = read_installed(tmp_path / "install", Store(tmp_path / "cache"))
+    with Store(tmp_path / "cache") as store:
+        found = read_installed(tmp_path / "install", store)
     assert [binary.package for binary in found.binaries] == ["winch"]
 
 
@@ -116,7 +118,8 @@ def test_links_of_a_devel_space_lead_to_the_package(tmp_path, made_elf):
     real = put(tmp_path / "devel", ".private/winch/lib/libropes.so", made_elf("EM_X86_64"))
     (tmp_path / "devel/lib").mkdir()
     (tmp_path / "devel/lib/libropes.so").symlink_to(real)
-    found = read_installed(tmp_path / "devel", Store(tmp_path / "cache"))
+    with Store(tmp_path / "cache") as store:
+        found = read_installed(tmp_path / "devel", store)
     assert [binary.package for binary in found.binaries] == ["winch"]  # and it counts once
 
 
@@ -249,7 +252,8 @@ def test_damaged_files_are_listed_and_the_others_checked(tmp_path, made_elf, say
 def test_a_file_that_may_not_be_read_is_listed(tmp_path, made_elf):
     put(tmp_path, "lib/libwinch.so", made_elf("EM_X86_64"))
     put(tmp_path, "lib/libcrane.so", made_elf("EM_X86_64")).chmod(0)
-    found = read_installed(tmp_path, Store(tmp_path / "cache"))
+    with Store(tmp_path / "cache") as store:
+        found = read_installed(tmp_path, store)
     assert [problem.message for problem in found.problems] == ["cannot be read: permission denied"]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
 import random
 import signal
@@ -103,7 +104,8 @@ def killed(given: dict, store: Path, meanwhile, chance: random.Random) -> int:
     last = start(given)
     last.join(60)
     assert last.exitcode == 0
-    assert sqlite3.connect(store).execute("PRAGMA integrity_check").fetchone() == ("ok",)
+    with contextlib.closing(sqlite3.connect(store)) as database:
+        assert database.execute("PRAGMA integrity_check").fetchone() == ("ok",)
     return middle
 
 
@@ -115,6 +117,8 @@ def start(given: dict):
 
 def written(store: Path) -> int:
     try:
-        return sqlite3.connect(f"file:{store}?mode=ro", uri=True).execute("SELECT count(*) FROM report").fetchone()[0]
+        # A question that fails would leave the file open, and this is asked thousands of times.
+        with contextlib.closing(sqlite3.connect(f"file:{store}?mode=ro", uri=True)) as database:
+            return database.execute("SELECT count(*) FROM report").fetchone()[0]
     except sqlite3.OperationalError:
         return 0  # it was killed before the file, or its tables, were made

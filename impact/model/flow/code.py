@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import posixpath
+import re
 from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
@@ -35,6 +36,8 @@ _CALL_NOTHING = frozenset(("Node", "object", "Object"))
 # Methods of strings that change them; algorithms that write where they are pointed to; those of Boost's string library.
 _CHANGE_STRING = frozenset(("insert", "erase", "replace", "push_back", "pop_back", "assign", "clear", "resize", "swap"))
 _CHANGE_RANGE = frozenset(("transform", "replace", "replace_if", "remove", "remove_if", "reverse", "rotate", "fill"))
+# What says how a parameter is handed over, and nothing of what it is.
+_HANDED_OVER = re.compile(r"\bconst\b|\btypename\b|[&*]")
 _CHANGE_IN_PLACE = ("replace_", "erase_", "trim", "to_lower", "to_upper")
 # Methods of pluginlib's ClassLoader<T> that make a T.
 MAKES_PLUGIN = frozenset(("createInstance", "createSharedInstance", "createUniqueInstance", "createUnmanagedInstance"))
@@ -767,6 +770,10 @@ class FlowCode:
         files = {one.path for _, one in found}
         return found if len(files) < 2 or len({constant.value for constant, _ in found}) == 1 else []
 
+    def list_seen_sources(self, path: str) -> list[CodeFile]:
+        """The C++ files that one sees, itself among them."""
+        return [self._by_path[seen] for seen in sorted(self._seen_files.list_seen(path)) if seen in self._by_path]
+
     def list_definitions(self, name: str) -> list[tuple[DataMember, CodeFile]]:
         """What C++ files define under a full name that another declares: a static member, a variable that is extern."""
         rows = (row for rows in self._constants.get(get_tail(name), {}).values() for row in rows)
@@ -1080,7 +1087,7 @@ class FlowCode:
         reached = (
             (target, (fn, call))
             for fn, call in calls
-            for target in _select_overloads(self.list_targets(call.callee, fn), call)
+            for target in _select_overloads(self.list_targets(call.callee, fn), call, fn)
         )
         return group_pairs((target, caller) for target, caller in reached if caller[0] is not target)
 
@@ -1300,12 +1307,41 @@ def _rate_nearness(cls: Cls, source: CodeFile, scope: str) -> int:
     return near + (_is_within(scope, get_outer(cls.name)) if get_outer(cls.name) else 0)
 
 
-def _select_overloads(targets: list[Fn], call: FlowCall) -> list[Fn]:
-    """Of functions of one name in C++ those that take as many arguments as a call has; all where none does."""
+def _select_overloads(targets: list[Fn], call: FlowCall, fn: Fn) -> list[Fn]:
+    """Of functions of one name in C++ those that take as many arguments as a call has, and of these those that take
+    variables of the types it gives; all where none does."""
     if len(targets) < 2 or targets[0].source.facts.language != "cpp":
         return targets
     given = len(call.arguments)
-    return [one for one in targets if len(one.facts.parameters) == given] or targets
+    fitting = [one for one in targets if len(one.facts.parameters) == given]
+    if len(fitting) < 2:
+        return fitting or targets
+    types = [_find_declared_type(argument, fn) for argument in call.arguments]
+    exact = [one for one in fitting if _takes_types(one, types)] if any(types) else []
+    return exact or fitting
+
+
+def _find_declared_type(argument: FlowExpr, fn: Fn) -> str:
+    """The type that a variable of a function is declared with, empty for what is no variable, or of no such type."""
+    if argument.kind != "name" or not argument.text.isidentifier():
+        return ""
+    made = fn.assigned.get(argument.text, ()) if argument.text in fn.locals else ()
+    declared = {row.type for row in made if row.type}
+    declared |= {one.type for one in fn.facts.parameters if one.name == argument.text}
+    found = _read_plain_type(declared.pop()) if len(declared) == 1 else ""
+    return "" if found == "auto" else found
+
+
+def _takes_types(fn: Fn, types: list[str]) -> bool:
+    """Whether the parameters of a function are of these types, as far as they are known."""
+    taken = [_read_plain_type(one.type) for one in fn.facts.parameters]
+    return all(not given or f"::{given}".endswith(f"::{own}") or f"::{own}".endswith(f"::{given}")
+               for given, own in zip(types, taken, strict=True))  # fmt: skip
+
+
+def _read_plain_type(written: str) -> str:
+    """A type without what says how it is handed over."""
+    return "".join(_HANDED_OVER.sub(" ", written).split())
 
 
 def _select_named(

@@ -17,6 +17,7 @@ from ....edges.memory import cache_method
 from ...facts.cpp.names import split_at_commas
 from ...facts.flow import FlowCall, FlowExpr
 from ...facts.python.text import join_dotted
+from ...targets.constants import load_constants
 from .calls import Calls, FrameworkCall
 from .code import FlowCode, Fn, Variable, find_parameter, get_outer, get_tail, is_number
 from .contexts import Contexts
@@ -24,6 +25,7 @@ from .defined import DefinedInterfaces
 from .graph import Role
 from .handles import NodeHandles, join_spaces
 from .modules import CodeFile
+from .outside_constants import OutsideConstants
 from .templates import Templates
 from .types import find_header_interface, find_interface, parse_flow_type
 from .values import LOST, WHICH_TURN, FlowValue, FlowValues, make_sibling
@@ -59,6 +61,14 @@ class Site(NamedTuple):
     reason: str = ""
     implied: bool = False
     types: tuple[TemplateType, ...] = ()
+
+
+class JoinedFilters(NamedTuple):
+    """Subscribers of filters that are given to one synchronizer, in their order. registered: path and line of the call
+    that gives it the callback."""
+
+    filters: tuple[Variable, ...]
+    registered: tuple[str, int]
 
 
 class Statement(NamedTuple):
@@ -158,7 +168,7 @@ class Sites:
         self.templates = Templates(code)
         self.handles, self.contexts = NodeHandles(calls), Contexts(code)
         values.find_prefix = self.find_prefix
-        values.find_message_text = self.find_message_text
+        values.find_outside_text = self.find_outside_text
 
     @cached_property
     def endpoints(self) -> list[Site]:
@@ -416,17 +426,27 @@ class Sites:
                 return self._resolve_interface(kind.arguments[0], fn)
         return ""
 
-    def find_message_text(self, path: str, fn: Fn) -> str | None:
-        """The value of a message's constant that is a string (`Topics::SCAN`, `Topics.SCAN`), None for all else."""
+    def find_outside_text(self, path: str, fn: Fn) -> str | None:
+        """The value of a constant that is a string: of a message (`Topics::SCAN`, `Topics.SCAN`), or of a released
+        package. None for all else."""
+        told = self._find_message_text(path, fn)
+        return self._released.find(path, fn) if told is None else told
+
+    @cached_property
+    def _released(self) -> OutsideConstants:
+        return OutsideConstants(self.code)
+
+    def _find_message_text(self, path: str, fn: Fn) -> str | None:
         head, _, name = path.replace("::", ".").rpartition(".")
-        if not self.defined.texts or not head or head.startswith("this"):
+        if not head or head.startswith("this"):
             return None
         if fn.source.facts.language == "cpp":
             type_ = head.replace(".", "::")
             known = self._resolve_interface(type_, fn) or self._resolve_in_namespaces(type_, fn)
         else:
             known = self._find_imported_type(head, fn.source) or ""
-        return self.defined.texts.get(known, {}).get(name)
+        texts = self.defined.texts.get(known)
+        return texts.get(name) if texts is not None else load_constants().messages.get(known, {}).get(name)
 
     def _resolve_interface(self, type_: str, fn: Fn) -> str:
         return find_interface(self.code.resolve_written(type_, fn.source, fn.scope).name)
@@ -611,18 +631,20 @@ class Sites:
         return found
 
     @cached_property
-    def joined_filters(self) -> list[tuple[Variable, ...]]:
-        """Subscribers of filters that are given to one synchronizer, in their order."""
+    def joined_filters(self) -> list[JoinedFilters]:
+        """The filters of each synchronizer whose callbacks take the messages in their order."""
         code = self.code
         sites = [one for one in self.endpoints if one.role == "subscriber" and not one.use.row.callback]
         filters = {self._find_variable(one.use) for one in sites} - {None}
         straight: dict[Variable, bool] = {}
+        registered: dict[Variable, tuple[str, int]] = {}
         for fn, call in code.list_calls_named(("registerCallback",)):
             name = call.callee.rpartition(".")[0]
             if name:
                 joint = code.identify(name, fn)
                 straight[joint] = straight.get(joint, True) and all(map(_is_in_order, call.arguments[:1]))
-        found: list[tuple[Variable, ...]] = []
+                registered.setdefault(joint, (fn.source.path, call.line))
+        found: list[JoinedFilters] = []
         for joint in straight:
             if not straight[joint]:
                 continue
@@ -630,16 +652,29 @@ class Sites:
                 arguments = given.arguments if isinstance(given, FlowCall) else given.parts
                 row = tuple(each for each in self._list_named(arguments, fn) if each in filters)
                 if row:
-                    found.append(row)
+                    found.append(JoinedFilters(row, registered[joint]))
         return found
 
     def find_position(self, site: Site) -> tuple[int, int] | None:
         """Which of the messages that come through a synchronizer is a subscriber's, and of how many; None where it is
         not known, or not one place."""
+        variable, rows = self._find_joined(site)
+        places = {(row.filters.index(variable), len(row.filters)) for row in rows if row.filters.count(variable) == 1}
+        return next(iter(places)) if len(places) == 1 else None
+
+    def find_joined(self, site: Site) -> tuple[tuple[str, ...], int, tuple[str, int]] | None:
+        """The types of all messages that come through the synchronizer of a subscriber, the place of its own among
+        them, and where the callback is registered; None where that is not known, or not one."""
+        rows = self._find_joined(site)[1]
+        place = self.find_position(site)
+        if place is None or len({row.filters for row in rows}) != 1:
+            return None
+        known = {self._find_variable(one.use): one.type for one in self.endpoints if one.role == "subscriber"}
+        return tuple(known.get(one, "") for one in rows[0].filters), place[0], rows[0].registered
+
+    def _find_joined(self, site: Site) -> tuple[Variable | None, list[JoinedFilters]]:
         variable = self._find_variable(site.use)
-        rows = [row for row in self.joined_filters if variable in row]
-        places = {(row.index(variable), len(row)) for row in rows if row.count(variable) == 1}
-        return next(iter(places)) if variable is not None and len(places) == 1 and rows else None
+        return variable, [row for row in self.joined_filters if variable is not None and variable in row.filters]
 
     @cached_property
     def joins(self) -> dict[Variable, list[Fn]]:

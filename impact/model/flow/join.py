@@ -53,6 +53,7 @@ from .names import (
 )
 from .nodes import BuiltPackage, CodeReach, StartableProgram
 from .objects import NodeObjects, make_key
+from .outside import list_outside
 from .plugin_hosts import PluginHosts, select_own
 from .qos import apply_overrides, find_qos, list_overridable
 from .started import Instance, make_instance
@@ -658,9 +659,11 @@ class Join:
             tuple(Unresolved(use.row.does, f"inside `{use.fn.name}`", *_get_place(use)) for use in self.sites.wrapped),
             self._uncompiled,
         )  # fmt: skip
+        known = [one.instance.started for one in running if one.instance is not None]
+        outside = tuple(dict.fromkeys(list_outside(launch, known, self._locate))) if launch is not None else ()
         return Graph(
             owners.list_nodes(), tuple(endpoints), tuple(publishes), tuple(timers), tuple(parameters), coverage, root,
-            rev, self.ros,
+            rev, self.ros, outside,
         )  # fmt: skip
 
     def _list_endpoints(self, owners: _Owners, count: _Count) -> Iterator[Endpoint]:

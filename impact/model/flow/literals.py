@@ -27,7 +27,7 @@ def spell_number(text: str, is_cpp: bool) -> str:
         number = int(parts["hex"] or parts["bits"] or parts["octal"], 16 if parts["hex"] else 2 if parts["bits"] else 8)
     else:
         octal = is_cpp and len(parts["plain"]) > 1 and parts["plain"][0] == "0"
-        if octal and parts["plain"].strip("01234567") != "":
+        if octal and parts["plain"].strip("01234567"):
             return text
         number = int(parts["plain"], 8 if octal else 10)
     return f"{parts['sign']}{number}"

@@ -19,7 +19,8 @@ from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number
 from .conditions import ConditionReader, DecidedCondition, is_truth
-from .elements import Elements, ListElement
+from .elements import SETTING, Elements, ListElement, find_begun
+from .given_lists import GivenLists
 from .graph import How
 from .literals import spell_number
 from .names import is_open, make_open_part, resolve_ros1_name
@@ -34,6 +35,8 @@ NODE, NAMESPACE = "{node}", "{ns}"
 LOST = "?"
 """Begins the namespace of a node handle that is not known."""
 _MOST = 12
+# Of loops whose turns are looked at one by one.
+_MOST_TURNS = 64
 _DEEPEST = 12
 _FAR = 6
 # Names that are known in part, of one endpoint.
@@ -70,6 +73,7 @@ _EACH = FlowExpr("other")
 _COUNTER = "enumerate"
 WHICH_TURN = "which turn of the loop it is"
 _TOGETHER = "these parts of the name belong together"
+_MEASURES = re.compile(r"([\w.]+)\.size\(\)\Z")
 _FLAG = re.compile(r"(!|not )?\s*\(?((?:self\.|this->|this\.)?[A-Za-z_]\w*)\)?")
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _OF_PAIRS = frozenset(("first", "second"))
@@ -80,6 +84,7 @@ _NODE_NAME = frozenset(("get_name", "getName", "get_fully_qualified_name"))
 _NODE_NAMESPACE = frozenset(("get_namespace", "getNamespace"))
 
 
+_NOT_SET = FlowValue(None, "given", "a parameter that the launch does not set")
 _NOT_GIVEN = FlowValue(None, "given", "an argument of the command line that is not given")
 
 
@@ -95,12 +100,13 @@ class Work:
     particular makes; makers: who makes the others; made: all of these; is_open: whether a launch gives anything. Where
     nothing asked, made and what is true or false are None, and arguments is UNASKED. higher, lower: by how much the
     number of things that are being evaluated could be larger or smaller without another answer of those that ask for
-    it. turns: those of loops that were asked for, None for any. is_alone: whether nothing else had a part in it that
-    may be otherwise another time. way, chosen: the calls and the turns of whoever works it out."""
+    it. turns: those of loops that were asked for, None for any; below: the settings below a prefix that were asked for.
+    is_alone: whether nothing else had a part in it that may be otherwise another time. way, chosen: the calls and the
+    turns of whoever works it out."""
 
     __slots__ = (
-        "arguments", "chosen", "free", "higher", "idle", "is_alone", "is_limited", "is_open", "items", "lines", "lower",
-        "made", "makers", "runs", "settings", "turns", "unmade", "way", "ways",
+        "arguments", "below", "chosen", "free", "higher", "idle", "is_alone", "is_limited", "is_open", "items",
+        "lines", "lower", "made", "makers", "runs", "settings", "turns", "unmade", "way", "ways",
     )  # fmt: skip
 
     def __init__(self, way: Mapping[Fn, FlowCall], chosen: Mapping[tuple[str, int], int] = {}):
@@ -109,6 +115,7 @@ class Work:
         self.items: set[tuple] = set()
         self.lines: set[tuple[Fn, int]] = set()
         self.settings: dict[str, FlowValue | None] = {}
+        self.below: dict[str, dict[str, str]] = {}
         self.runs: set[Fn] = set()
         self.idle: set[Fn] = set()
         self.free: set[Fn] = set()
@@ -149,6 +156,7 @@ class Work:
     def note_given(self, other: Work) -> None:
         """Notes of what something else rests on what a launch gives."""
         self.settings.update(other.settings)
+        self.below.update(other.below)
         if other.arguments is not UNASKED:
             self.arguments = other.arguments
         if other.is_open is not None:
@@ -217,8 +225,8 @@ class FlowValues:
         self.node, self.made, self.turns = node, made or {}, turns or {}
         # The namespace of the node handle that a use is called on, and what is known of that, by the call.
         self.find_prefix: Callable[[FrameworkCall, FlowValues], str] = lambda use, values: ""
-        # The value of a message's constant by its path, where it is a string.
-        self.find_message_text: Callable[[str, Fn], str | None] = lambda path, fn: None
+        # The value of a constant of a message or a released package by its path, where it is a string.
+        self.find_outside_text: Callable[[str, Fn], str | None] = lambda path, fn: None
         self._prefixes: dict[int, str] = {}
         self._asked_prefixes: set[int] = set()
         self._left = _MOST_STEPS
@@ -285,11 +293,14 @@ class FlowValues:
         for each in fn.facts.assignments:
             if each.line != row.line or each.operator not in ("=", "for"):
                 continue
-            container = _find_walked(each) if each.guard == guard else None
-            if container is None and each.value.kind == "number":
+            container = (_find_walked(each) if each.guard == guard else None) or find_begun(each.value)
+            measured = _MEASURES.search(row.text) if each.value.kind == "number" else None
+            if measured is not None:
+                container = FlowExpr("name", measured[1])
+            elif container is None and each.value.kind == "number":
                 inside = (one.line for one in fn.facts.calls if guard in fn.list_guards_around(one.guard))
                 counts.append(len(self.elements.list_counted(each.target, fn, next(inside, row.line))))
-            elif container is not None and container.text != _COUNTER:
+            if container is not None and container.text != _COUNTER:
                 counts.append(len(self.elements.list_turns(container, fn, each.line) or ()))
         known = [count for count in counts if count]
         return min(known, default=0)
@@ -302,7 +313,7 @@ class FlowValues:
         other._known, other._works, other._asking = self._known, self._works, self._asking
         other.find_prefix, other._prefixes = self.find_prefix, self._prefixes
         other._asked_prefixes = self._asked_prefixes
-        other.find_message_text = self.find_message_text
+        other.find_outside_text = self.find_outside_text
         return other
 
     def evaluate(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
@@ -348,6 +359,8 @@ class FlowValues:
             yield FlowValue(spell_number(value.text, fn.source.facts.language == "cpp"))
         elif kind == "text":
             yield FlowValue(value.text)
+        elif kind == SETTING:
+            yield FlowValue(value.text, "launch")
         elif kind == "name":
             yield from self._evaluate_name(value.text, fn, line, seen)
         elif kind == "join":
@@ -529,24 +542,19 @@ class FlowValues:
     @cached_property
     def elements(self) -> Elements:
         """What lists and dictionaries of the code hold."""
-        return Elements(self.code, self.runs, self.way, self.made)
+        return Elements(self.code, self.runs, self.way, self.made, GivenLists(self).find, self.find_turn)
 
     def _evaluate_chosen(
         self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
     ) -> Iterator[FlowValue]:  # fmt: skip
         """What stands at a place, at a key, or in each turn of a loop."""
-        row = self._find_row(container, fn, line) if index.kind == "number" else None
-        if row is not None:
-            inner = FlowExpr("index", "", (row.value, index))
-            yield from self._evaluate(inner, row.fn, row.line, (*seen, ("element", row.value)))
-            return
         if index.kind in ("number", "text"):
             found = self.elements.select(container, index, fn, line)
         elif index.kind == "other" and not index.text and container.text == _COUNTER:
             yield from self._evaluate_count(container, fn, line, seen)
             return
         elif index.kind == "other" and not index.text:
-            found = self._list_walked(container, fn, line)
+            found = self.elements.list_walked(container, fn, line)
             # A loop over a dictionary goes through its keys.
             found = [one._replace(value=_get_key(one.value)) for one in found or ()]
         else:
@@ -562,22 +570,6 @@ class FlowValues:
                 yield FlowValue(None, "unresolved", reason, beside=True)
         else:
             yield from self._evaluate_elements(container, fn, line, seen)
-
-    def _list_walked(self, container: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
-        """What a loop goes through; in one of its turns alone, where that is chosen."""
-        turn = self.find_turn(fn, line)
-        rows = self.elements.list_turns(container, fn, line) if turn is not None else None
-        if rows and turn is not None and turn < len(rows):
-            return [rows[turn]]
-        return self.elements.list_walked(container, fn, line)
-
-    def _find_row(self, container: FlowExpr, fn: Fn, line: int) -> ListElement | None:
-        """What a loop goes through in the turn that is chosen, as a container; None for all else."""
-        if container.kind != "index" or len(container.parts) != 2 or container.parts[1] != _EACH:
-            return None
-        turn = self.find_turn(fn, line)
-        rows = self.elements.list_turns(container.parts[0], fn, line) if turn is not None else None
-        return rows[turn] if rows and turn is not None and turn < len(rows) else None
 
     def _evaluate_count(self, container: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         """The number of a turn, as `enumerate` counts."""
@@ -598,15 +590,6 @@ class FlowValues:
                 turn = self.find_turn(fn, each.line)
                 return [found[turn]] if turn is not None and turn < len(found) else found
         return found
-
-    def _find_pair(self, path: str, fn: Fn, line: int) -> list[ListElement] | None:
-        """What `entry.first` and `entry.second` are, in the turn that is chosen, or in any."""
-        head, _, last = path.rpartition(".")
-        for each in fn.assigned.get(head, ()):
-            row = self._find_row(each.value, fn, each.line) if each.guard >= 0 and _begins_turn(each, fn) else None
-            if row is not None and row.value.kind == "list" and len(row.value.parts) == 2:
-                return [row._replace(value=row.value.parts[last == "second"])]
-        return self.elements.find_pair(path, fn, line)
 
     def _select_at_each(
         self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
@@ -692,7 +675,7 @@ class FlowValues:
         if path.endswith("()"):
             yield from self._evaluate_inner(path.removesuffix("()"), fn, line, seen)
             return
-        known = self._find_pair(path, fn, line) if parts[-1] in _OF_PAIRS and "." in path else None
+        known = self.elements.find_pair(path, fn, line) if parts[-1] in _OF_PAIRS and "." in path else None
         known = known or (self._list_counted(path, fn, line) if path in fn.locals else None)
         if known:
             for one in known:
@@ -718,7 +701,7 @@ class FlowValues:
         found = list(self.evaluate_variable(variable, fn, (*seen, variable), self._find_origins(path, fn), at, line))
         if not found:
             found = list(self._evaluate_declared(path, fn, line, (*seen, variable)))
-        told = None if found else self.find_message_text(path, fn)
+        told = None if found else self.find_outside_text(path, fn)
         if found:
             yield from found
         elif told is not None:
@@ -820,6 +803,7 @@ class FlowValues:
             and (rests.made is None or rests.made is made)
             and (not rests.turns or all(self.turns.get(loop) == turn for loop, turn in rests.turns.items()))
             and (rests.arguments is UNASKED or rests.arguments == self.arguments)
+            and all(self.list_settings_below(prefix) == given for prefix, given in rests.below.items())
             and (not rests.settings or all(self.find_setting(name) == v for name, v in rests.settings.items()))
         )
 
@@ -1428,6 +1412,30 @@ class FlowValues:
             given = None
         return FlowValue(given, "launch") if given is not None else None
 
+    def note_open(self) -> bool:
+        """Whether a launch gives anything, which is noted."""
+        if self._works:
+            self._works[-1].is_open = bool(self.settings or self.arguments)
+        return bool(self.settings)
+
+    def list_settings_below(self, prefix: str) -> dict[str, str]:
+        """What a launch sets below a prefix, by the rest of the name; in ROS 1 by a global prefix."""
+        head = f"{prefix}{'/' if self.node else '.'}"
+        found = {name[len(head) :]: value for name, value in self.settings.items() if name.startswith(head)}
+        if self._works:
+            self._works[-1].below[prefix] = found
+        return found
+
+    def read_server(self, name: str, use: FrameworkCall) -> tuple[str | None, dict[str, str]]:
+        """What the parameter server of ROS 1 has under the name that a use gives a parameter: a value, or what is below
+        it."""
+        setting = self._make_setting_name(name, use)
+        if not self.node or setting.startswith(LOST):
+            return None, {}
+        given = self._find_setting_of(use, name)
+        below = self.list_settings_below(resolve_ros1_name(setting, self.node))
+        return given.text if given is not None else None, below
+
     def _find_parameter_name(self, use: FrameworkCall, seen: tuple) -> str:
         """The name that a use gives a parameter, empty where it is not known."""
         written = self.calls.find_argument(use, use.row.topic)
@@ -1442,8 +1450,19 @@ class FlowValues:
             self._works[-1].settings[setting] = given
         return given
 
+    def _list_given_names(self, use: FrameworkCall, seen: tuple) -> list[FlowValue]:
+        """The names that a use gives a parameter, where a launch tells them and sets each of these parameters."""
+        written = self.calls.find_argument(use, use.row.topic)
+        found = list(self._evaluate(written, use.fn, use.call.line, seen)) if written is not None else []
+        told = len(found) > 1 and all(one.how == "launch" and one.text for one in found)
+        return [self._find_setting_of(use, one.text or "") or _NOT_SET for one in found] if told else []
+
     def _evaluate_parameter(self, use: FrameworkCall, seen: tuple) -> Iterator[FlowValue]:
         """The default of the parameter that a use declares or reads."""
+        several = self._list_given_names(use, seen)
+        if several:
+            yield from several
+            return
         name = self._find_parameter_name(use, seen)
         given = self._find_setting_of(use, name)
         if given is not None:
@@ -1489,6 +1508,10 @@ class FlowValues:
             if name is not None and name.kind == "text":
                 found.setdefault(name.text, []).append(use)
         return found
+
+    def list_filling(self, variable: Variable) -> list[FrameworkCall]:
+        """The calls that fill a variable with the value of a parameter."""
+        return self.filled.get(variable, [])
 
     @cached_property
     def filled(self) -> dict[Variable, list[FrameworkCall]]:
@@ -1561,7 +1584,7 @@ def _get_key(value: FlowExpr) -> FlowExpr:
 
 def _mentions(value: FlowExpr, path: str) -> bool:
     """Whether an expression has a path in it."""
-    named = value.text == path or value.text.startswith(f"{path}.")
+    named = value.kind != "text" and (value.text == path or value.text.startswith(f"{path}."))
     inner = (*value.parts, *((value.receiver,) if value.receiver is not None else ()))
     return named or any(_mentions(part, path) for part in inner)
 
