@@ -217,10 +217,15 @@ class _Digester:
             for site in join.sites.endpoints
             if site.implied and site.role == "subscriber"
         }
+        # Of a function that is given names and callbacks it is not known which name is that of which callback.
         self.unnamed = {
             (site.use.fn.source.path, site.use.call.line)
             for site in join.sites.endpoints
-            if site.role != "publisher" and not any(value.text for value in site.names)
+            if site.role != "publisher"
+            and (
+                not any(value.text for value in site.names)
+                or (len({value.text for value in site.names}) > 1 and len(site.callbacks) > 1)
+            )
         }
 
     def build_digest(self) -> PackageStatements:
@@ -257,10 +262,13 @@ class _Digester:
         fn, code = statement.use.fn, self.join.code
         before, _, name = self.join.calls.get_receiver(statement.use).rpartition(".")
         owner = code.find_owner(fn) if before == "this" and fn.source.facts.language == "python" else None
-        if statement.sites or owner is None or {("", name), (owner.key, name)} & self._assigned:
+        if statement.sites or owner is None or owner.key in code.derived:
             return False
-        whole = all(base in ("", "object") for cls in code.list_bases(owner) for base in cls.facts.bases)
-        return whole and owner.key not in code.derived
+        classes = code.list_bases(owner)
+        if not self._assigned.isdisjoint((key, name) for key in ("", *(cls.key for cls in classes))):
+            return False
+        bases = ((base, cls) for cls in classes for base in cls.facts.bases if base not in ("", "object"))
+        return all(code.find_class(base, cls.source, cls.name) is not None for base, cls in bases)
 
     @cached_property
     def _assigned(self) -> frozenset[tuple[str, str]]:

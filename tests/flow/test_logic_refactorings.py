@@ -844,6 +844,20 @@ def test_a_truth_value_that_is_handed_on_is_still_what_it_was_made_with() -> Non
     assert [kind for kind, _ in compare_cpp(plain, changed)] == ["changed"]
 
 
+def test_time_that_has_passed_is_asked_alike_in_both_kinds_of_ros() -> None:
+    one = say("if ((ros::Time::now() - last_).toSec() > 3.0) pub_.publish(msg);")
+    for other in ("now()", "this->now()", "node_->now()", "get_clock()->now()"):
+        assert compare_cpp(one, say(f"if (({other} - last_).seconds() > 3.0) pub_.publish(msg);")) == []
+    steady = say("if ((std::chrono::steady_clock::now() - last_).seconds() > 3.0) pub_.publish(msg);")
+    assert [kind for kind, _ in compare_cpp(one, steady)] == ["changed"]
+    longer = say("if ((now() - last_).seconds() > 5.0) pub_.publish(msg);")
+    assert [kind for kind, _ in compare_cpp(one, longer)] == ["tightened"]
+    asked = "        if {} > self.last:\n            self.pub.publish(msg)"
+    old, new = asked.format("rospy.Time.now()"), asked.format("self.get_clock().now()")
+    assert compare_python(old, new) == []
+    assert [kind for kind, _ in compare_python(old, asked.format("time.time()"))] == ["changed"]
+
+
 def test_a_topic_that_is_not_known_is_no_other_one() -> None:
     body = say("pub_.publish(msg);")
     old = CPP.replace("BODY", body)
@@ -855,6 +869,47 @@ def test_a_topic_that_is_not_known_is_no_other_one() -> None:
     other = old.replace('"in"', '"other"')
     said = [("trigger changed", "messages of `other`, was `in`")]
     assert compare({"talker.cpp": old}, {"talker.cpp": other}) == said
+
+
+SERVED = """
+import rospy
+from std_msgs.msg import String
+from std_srvs.srv import Empty
+
+class Talker:
+    def __init__(self):
+        self.pub = rospy.Publisher("out", String, queue_size=1)
+        SERVE
+
+    def serve(self, name, callback):
+        return rospy.Service("arm/" + name, Empty, callback)
+
+    def on_open(self, request):
+        self.pub.publish("open")
+
+    def on_close(self, request):
+        if request.now:
+            self.pub.publish("closed")
+
+if __name__ == "__main__":
+    rospy.init_node("talker")
+    Talker()
+    rospy.spin()
+"""
+
+
+def test_a_service_that_a_helper_makes_is_the_same_service() -> None:
+    named = SERVED.replace("SERVE", "\n        ".join(
+        f'rospy.Service("arm/{one}", Empty, self.on_{one})' for one in ("open", "close")
+    ))  # fmt: skip
+    helped = SERVED.replace("SERVE", "\n        ".join(
+        f'self.serve("{one}", self.on_{one})' for one in ("open", "close")
+    ))  # fmt: skip
+    assert compare({"talker.py": named}, {"talker.py": helped}) == []
+    other = named.replace('"arm/close"', '"arm/shut"')
+    assert compare({"talker.py": named}, {"talker.py": other}) == [
+        ("trigger changed", "service `arm/shut`, was `arm/close`")
+    ]
 
 
 def test_that_a_file_is_run_is_no_condition() -> None:
@@ -873,5 +928,10 @@ def test_what_nothing_assigns_publishes_nothing() -> None:
     assert [kind for kind, _ in compare_python("        pass", made)] == ["new"]
     other = "\n\nclass Other:\n    def __init__(self):\n        self.speak_pub = rospy.Publisher('more', String)\n"
     assert compare_python(f"        pass{other}", f"{sends}{other}") == []
+    derived = PYTHON.replace("class Talker:", "class Voice:\n    pass\n\nclass Talker(Voice):")
+    silent, sending = (derived.replace("BODY", body) for body in ("        pass", sends))
+    assert compare({"talker.py": silent}, {"talker.py": sending}) == []
+    unseen = [text.replace("(Voice)", "(other.Voice)") for text in (silent, sending)]
+    assert [kind for kind, _ in compare({"talker.py": unseen[0]}, {"talker.py": unseen[1]})] == ["new"]
     given = "\n\ndef give(one):\n    one.speak_pub = make(one)\n"
     assert [kind for kind, _ in compare_python(f"        pass{given}", f"{sends}{given}")] == ["new"]

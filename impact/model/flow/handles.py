@@ -306,9 +306,10 @@ class NodeHandles:
 
     @staticmethod
     def _evaluate(value: FlowExpr, fn: Fn, line: int, values: FlowValues) -> Iterable[FlowValue]:
-        """What a namespace may be that is given to a handle."""
+        """What a namespace may be that is given to a handle. roscpp takes the slash at the end away before it resolves
+        it, so that `/` is that of the node or handle around."""
         found = values.evaluate(value, fn, line)
-        return [_LOST if one.text is None else one for one in found]
+        return [_LOST if one.text is None else one._replace(text="") if one.text == "/" else one for one in found]
 
 
 def join_spaces(base: FlowValue, below: FlowValue) -> FlowValue:

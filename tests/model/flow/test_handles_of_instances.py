@@ -1,7 +1,7 @@
 """Node handles whose namespace another caller, object or line gives: each instance has its own names."""
 
 import pytest
-from joining import ends, graph
+from joining import ends, graph, graph_on_disk, manifest
 
 HEAD = """
     #include <ros/ros.h>
@@ -181,3 +181,23 @@ def test_a_sub_node_puts_relative_names_into_its_namespace(name, topic):
         }}
     """})  # fmt: skip
     assert {topic for _, topic, _ in ends(found, "publisher")} == {topic}
+
+
+@pytest.mark.parametrize(("handle", "expected"), [
+    # roscpp takes the slash away: it is the namespace of the node, or that of the handle around.
+    ('ros::NodeHandle nh("/");', "/left/state"),
+    ('ros::NodeHandle own("~"), nh(own, "/");', "/left/it/state"),
+    ('ros::NodeHandle nh("/arm/");', "/arm/state"),
+    ('ros::NodeHandle nh("/arm");', "/arm/state"),
+    ("ros::NodeHandle nh;", "/left/state"),
+])  # fmt: skip
+def test_a_slash_alone_is_no_other_namespace(tmp_path, handle, expected):
+    main = f'{handle} ros::Publisher state = nh.advertise<Empty>("state", 1); ros::spin();'
+    code = f'{HEAD}\nint main(int argc, char ** argv) {{ ros::init(argc, argv, "it");\n{main}\n}}'
+    found = graph_on_disk(tmp_path, {
+        "p/package.xml": manifest("p", "catkin"),
+        "p/CMakeLists.txt": "project(p)\nadd_executable(it it.cpp)\n",
+        "p/it.cpp": code,
+        "p/left.launch": '<launch><group ns="left"><node pkg="p" type="it" name="it"/></group></launch>',
+    })  # fmt: skip
+    assert ends(found, "publisher") >= {("/left/it", expected, "std_msgs/Empty")}
