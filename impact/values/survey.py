@@ -544,6 +544,8 @@ def _explore_entries(prepared: PreparedCallback, bounds: Bounds) -> Exploration:
 def _read_result(answer: CallbackAnswer, result: Evaluated | Died, root: Path) -> CallbackAnswer:
     if isinstance(result, Died):
         return replace(answer, reason=f"the exploration ended early: {result.why}")
+    if not result.counts and not result.left:
+        return replace(answer, reason="no way of making the node leads to the callback", seconds=result.seconds)
     examples = tuple(replace(one, place=_shorten_place(one.place, root)) for one in result.examples)
     sent = tuple(_shorten_sent(one, root) for one in result.sent)
     return replace(
