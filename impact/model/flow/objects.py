@@ -189,7 +189,9 @@ class NodeObjects:
             return join_name("/", own)
         texts = GivenPiece(written, use.fn, use.call.line).list_texts(values)
         space = texts.pop() if len(texts) == 1 else None
-        return join_name(_OPEN if space is None else "/" + space.lstrip("/"), own)
+        if space is not None:
+            space = space.replace(NAMESPACE, "")  # of another node, whose own is that of all where nothing is given
+        return join_name(_OPEN if space is None or "{" in space else "/" + space.strip("/"), own)
 
     def find_fixed(self, use: FrameworkCall, values: FlowValues) -> frozenset[str]:
         """What the options of a node say of it, whatever a launch says, as NodeObject.fixed has it."""

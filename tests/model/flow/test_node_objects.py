@@ -71,6 +71,19 @@ HEAD = ("/head", "/head/nod")
             {HEAD, ("/ears/left", "/ears/left/heard"), ("/ears/right", "/ears/right/heard")},
         ),
         ("left_ = std::make_shared<Ear>(choose());", "", {HEAD, ("/<Ear>", "/<Ear>/heard")}),
+        # In the namespace of another node, and below its name.
+        (
+            'inner_ = std::make_shared<rclcpp::Node>("inner", get_namespace());'
+            'inner_pub_ = inner_->create_publisher<Bool>("a", 1);',
+            "",
+            {HEAD, ("/inner", "/a")},
+        ),
+        (
+            'inner_ = std::make_shared<rclcpp::Node>("inner", get_fully_qualified_name());'
+            'inner_pub_ = inner_->create_publisher<Bool>("a", 1);',
+            "",
+            {HEAD, ("/<namespace>/inner", "/<namespace>/a")},
+        ),
         # What another class makes on a node that it is given.
         (
             'inner_ = std::make_shared<rclcpp::Node>("inner"); aide_ = std::make_shared<Aide>(inner_);',
