@@ -8,22 +8,27 @@ adds, of messages within texts of 8 bytes and arrays of 3 elements and of any st
     crashes  what some message leads to: kind (as rosimpact names it) and line
     opaque   true where it cannot be said without code that is not in the workspace; then the others are left out
     beyond   true where something follows only from arrays that are longer
-What the tool says is computed when it is scored, on a checkout of the commit, and written beside it (NAME.said.jsonl).
+What the tool says is computed when it is scored, on a checkout of the commit, and written beside it (NAME.said.jsonl),
+with the most memory that the run on its workspace took, in MB.
 A crash that the reader has not got is judged by hand afterwards: `true` in NAME.verdicts.jsonl (repo, path, line, kind)
 
 usage: value_sight.py draw --set NAME --clones FOLDER [--number 6] [--seed 20]
-       value_sight.py score --set NAME --clones FOLDER --work FOLDER [--replay] [--seconds 20] [--resume]
+       value_sight.py score --set NAME --clones FOLDER --work FOLDER [--replay] [--seconds 20] [--compiling 60]
+                     [--resume]
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import os
 import random
 import statistics
 import subprocess
 import sys
+import threading
 from pathlib import Path
+from types import TracebackType
 
 import mining
 from field_sight import list_callbacks
@@ -49,6 +54,46 @@ def draw(options: argparse.Namespace, systems: list[dict]) -> None:
             print(f"{system['repo']}: {len(records)} callbacks", file=sys.stderr, flush=True)
 
 
+class MemoryWatch:
+    """The most memory that this process and all that it started had at a time, in MB: the sum of their resident sizes,
+    looked at ten times a second, so that pages which forked processes have in common count for each of them."""
+
+    def __init__(self) -> None:
+        self.peak = 0
+        self._over = threading.Event()
+        self._watching = threading.Thread(target=self._watch, daemon=True)
+
+    def __enter__(self) -> MemoryWatch:
+        self._watching.start()
+        return self
+
+    def __exit__(self, _: type[BaseException] | None, __: BaseException | None, ___: TracebackType | None) -> None:
+        self._over.set()
+        self._watching.join()
+
+    def _watch(self) -> None:
+        while not self._over.wait(0.1):
+            self.peak = max(self.peak, measure_tree(os.getpid()))
+
+
+def measure_tree(root: int) -> int:
+    """The resident sizes of a process and of all below it, in MB."""
+    parents: dict[int, int] = {}
+    sizes: dict[int, int] = {}
+    for folder in Path("/proc").iterdir():
+        if not folder.name.isdigit():
+            continue
+        try:
+            fields = (folder / "stat").read_text().rpartition(")")[2].split()
+        except OSError:
+            continue
+        parents[int(folder.name)], sizes[int(folder.name)] = int(fields[1]), int(fields[21])
+    own = {root}
+    while more := {one for one, parent in parents.items() if parent in own} - own:
+        own |= more
+    return sum(sizes.get(one, 0) for one in own) * os.sysconf("SC_PAGE_SIZE") // 1_000_000
+
+
 def describe(answer: CallbackAnswer) -> dict:
     """What the tool says of a callback, as facts."""
     return {
@@ -60,6 +105,7 @@ def describe(answer: CallbackAnswer) -> dict:
             if one.crash is not None
         ],
         "unknown": list(answer.unknown)[:5], "seconds": round(answer.seconds, 2),
+        "compiled_in": round(answer.compiled_in, 1), "rounds": answer.rounds,
     }  # fmt: skip
 
 
@@ -84,11 +130,12 @@ def ask(options: argparse.Namespace, system: dict, records: list[dict]) -> list[
     if not folder.exists():
         check_out(clone, system["commit"], folder)
     names = sorted({record["callback"] for record in records})
-    bounds = Bounds(seconds=options.seconds)
+    bounds = Bounds(seconds=options.seconds, compiling=options.compiling)
     try:
-        answer = explore_values(
-            folder, callbacks=names, bounds=bounds, replays=options.replay, publishers=False, jobs=2
-        )
+        with MemoryWatch() as watch:
+            answer = explore_values(
+                folder, callbacks=names, bounds=bounds, replays=options.replay, publishers=False, jobs=2
+            )
     except UserError as error:
         print(f"{system['repo']}: {error}", file=sys.stderr)
         return [{"explored": False, "reason": str(error)} for _ in records]
@@ -98,6 +145,7 @@ def ask(options: argparse.Namespace, system: dict, records: list[dict]) -> list[
         rows = [one for one in rows if one.path == record["path"]] or rows
         same = [one for one in rows if one.message_type == record["type"]] or rows
         said.append(describe(same[0]) if same else {"explored": False, "reason": "the tool has no such callback"})
+        said[-1]["memory"] = watch.peak
     return said
 
 
@@ -124,19 +172,24 @@ def score(options: argparse.Namespace, systems: list[dict], records: list[dict])
         wrong = [f"{record['callback']}" for record, said in explored
                  if word in record and record[word] != bool(said["ways"].get(reaction.value))]  # fmt: skip
         print(f"{word}: {len(judged) - len(wrong)} of {len(judged)} the same; otherwise: {', '.join(wrong)}")
-    found = missed = unconfirmed = 0
+    found = missed = unconfirmed = confirmed = 0
     others: list[str] = []
     for record, said in explored:
         known = {(one["kind"], one["line"]) for one in record.get("crashes", ())}
         seen = {(one["kind"], one["line"]) for one in said["crashes"]}
         found, missed = found + len(known & seen), missed + len(known - seen)
         unconfirmed += sum(one["confirmed"] is False for one in said["crashes"])
+        confirmed += sum(one["confirmed"] is True for one in said["crashes"])
         others += [f"{record['repo']} {record['callback']}:{line} {kind}" for kind, line in sorted(seen - known)]
-    print(f"crashes: {found} as the reader has them, {missed} missed, {unconfirmed} not confirmed by the replay")
+    print(f"crashes: {found} as the reader has them, {missed} missed; "
+          f"{confirmed} confirmed by the replay, {unconfirmed} not")  # fmt: skip
     print("to be judged: " + ("; ".join(others) or "none"))
     times = [said["seconds"] for _, said in pairs if "seconds" in said]
     if times:
         print(f"seconds: median {statistics.median(times):.2f}, most {max(times):.2f}")
+    sizes = [said["memory"] for _, said in pairs if "memory" in said]
+    if sizes:
+        print(f"memory of all processes of a run: most {max(sizes)} MB")
 
 
 def main() -> None:
@@ -148,6 +201,7 @@ def main() -> None:
     parser.add_argument("--number", type=int, default=6)
     parser.add_argument("--seed", type=int, default=20)
     parser.add_argument("--seconds", type=float, default=20.0)
+    parser.add_argument("--compiling", type=float, default=60.0, help="seconds of the processor for each source")
     parser.add_argument("--replay", action="store_true")
     parser.add_argument("--resume", action="store_true", help="systems that have an answer already are not asked again")
     options = parser.parse_args()

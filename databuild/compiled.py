@@ -2,14 +2,16 @@
 
     python -P -m rosimpact.databuild.compiled WORK [--suite bookworm=APT_CONF] [--clones CLONES] --output DATA
 
-Of a suite of Debian the shared libraries of the packages in data/libraries.sqlite are downloaded, and of those that
-have no shared ones the static libraries; and those of the packages of ROS 1 that Debian has. What a library defines for
-itself counts (`nm`: a strong symbol); inline functions and templates are in it as weak symbols, or not at all. Of
-packages of ROS that Debian has not, the sources of the newest release in a clone tell: a function that a compiled file
-of an installed library defines.
+Of a suite of Debian the shared libraries of the packages in data/libraries.sqlite are downloaded with the development
+packages, and of those that have no shared ones the static libraries; and those of the packages of ROS 1 that Debian
+has. What a library defines for itself counts (`nm`: a strong symbol); inline functions and templates are in it as weak
+symbols, or not at all. Of packages of ROS that Debian has not, the sources of the newest release in a clone tell: a
+function that a compiled file of an installed library defines.
 
 Kept are names that a header declares: functions without a receiver, and classes of which no object can be made without
-the library, since each constructor, or the destructor, is compiled into it. Names, libraries and packages only.
+the library, since each constructor, or the destructor, is compiled into it. A function of C may be declared by macros
+(`YAML_DECLARE(int) yaml_parser_load(...)`): of these the word before a parenthesis in a header counts. Names,
+libraries and packages only.
 """
 
 from __future__ import annotations
@@ -28,7 +30,7 @@ import msgspec
 import zstandard
 
 from ..edges.files import write_file
-from ..impact.facts.cpp.lexical import COMMENT
+from ..impact.facts.cpp.lexical import COMMENT, scan
 from ..impact.facts.store import Store
 from ..impact.facts.surface import CLASSES, Entity, list_offered
 from ..impact.targets.providers.compiled import FILE, CompiledTable
@@ -38,6 +40,7 @@ from ..impact.targets.tables import DATA
 from ..impact.targets.unpacked import read_table
 from ..impact.targets.version import parse
 from ..impact.tree import TreeError
+from .extract.cpp_directives import blank_directives
 from .libraries import count_uses, find_lists, read_fields
 from .providers import is_ros_source, read_dependencies
 from .surface.clones import Clone, VersionError
@@ -49,6 +52,7 @@ _LARGEST = 120_000_000
 _RARE = 50
 """Libraries of which manifests name the packages less often are left out."""
 _SHARED = re.compile(r"(?:usr/)?lib/(?:[^/]*/)*?lib([\w.+-]+?)(?:-[\d.]+)?\.so[\d.]*\Z")
+_HEADER = re.compile(r"usr/include/.*\.(?:h|hh|hpp|hxx)\Z")
 _STATIC = re.compile(r"(?:usr/)?lib/(?:[^/]*/)*?lib([\w.+-]+)\.a\Z")
 _SYMBOL = re.compile(r"^[0-9a-f]* *([TBDRSi]) (.+)$", re.MULTILINE)
 _TAG = re.compile(r"\[abi:\w+\]|@+[\w.]+\Z")
@@ -57,7 +61,9 @@ _TABLE = "vtable for "
 _DEFINED = re.compile(r"^([\w \t:<>,&*]*?)\b((?:\w+::)*~?\w+)[ \t]*\(([^;{}]{0,1000})\{", re.MULTILINE)
 """A function that is defined at the start of a line."""
 _RELEASE = re.compile(r"v?\d+(?:\.\d+)+")
-_Kept = tuple[dict[str, set[str]], set[str], dict[str, str]]
+_CALLED = re.compile(r"\b([A-Za-z_]\w*)(?:\s*\(|\s+[A-Z_][A-Z0-9_]*\s*\(\()")
+"""A word before a parenthesis, or before a macro for compilers of old: `deflate OF((z_streamp strm, int flush))`."""
+_Kept = tuple[dict[str, set[str]], set[str], dict[str, str], bool, set[str]]
 _NAME = re.compile(r"[A-Za-z]\w*(?:::[A-Za-z]\w*)*\Z")
 _PARTS = 2
 """A library of more parts is left out: which of them a name needs hangs on the version, and whoever links one part gets
@@ -69,7 +75,8 @@ _SHORTEST = 6
 class Symbols:
     """What libraries define for themselves. overloads: functions by their names, without what is around them where
     `outer` is not known. tables: classes whose table of virtual functions is theirs. stems: of the library that has a
-    name, as it is linked. whole: whether names are qualified by their namespaces."""
+    name, as it is linked. whole: whether names are qualified by their namespaces. called: words that stand before a
+    parenthesis in headers."""
 
     def __init__(
         self,
@@ -77,10 +84,11 @@ class Symbols:
         tables: Iterable[str] = (),
         stems: Mapping[str, str] | None = None,
         whole: bool = True,
+        called: Iterable[str] = (),
     ) -> None:
         self.overloads: dict[str, set[str]] = defaultdict(set, overloads or {})
         self.tables, self.stems = set(tables), dict(stems or {})
-        self._whole = whole
+        self.whole, self.called = whole, set(called)
 
     def add(self, stem: str, text: str) -> None:
         """What `nm -C` prints of a library. stem: as it is linked."""
@@ -94,6 +102,12 @@ class Symbols:
                 self.overloads[head[1]].add(plain)
                 self.stems.setdefault(head[1], stem)
 
+    def list_c_functions(self, seen: Collection[str]) -> Iterator[str]:
+        """Functions of C that headers declare in a way that is not read. seen: names whose declarations are."""
+        for name, each in self.overloads.items():
+            if name in self.called and each == {name} and name not in seen:
+                yield name
+
     def select(self, declared: Iterable[Entity]) -> dict[str, str]:
         """Of what headers declare, the names that need a library, each with its stem; `{}` follows those of classes."""
         functions: dict[str, list[Entity]] = defaultdict(list)
@@ -103,7 +117,7 @@ class Symbols:
                 functions[one.name].append(one)
             elif one.kind in CLASSES and one.template is None and not one.arguments:
                 classes.add(one.name)
-        found = {}
+        found = {name: self._find_stem(name) for name in self.list_c_functions(functions.keys())}
         for name, each in functions.items():
             alone = all(one.kind == "function" or (one.kind == "method" and "static" in one.traits) for one in each)
             if alone and self._has_all(name, each):
@@ -118,7 +132,7 @@ class Symbols:
         """How a name may be written here: by itself, and as its last parts where namespaces are not known."""
         yield name
         parts = name.split("::")
-        if not self._whole:
+        if not self.whole:
             yield from ("::".join(parts[place:]) for place in range(1, len(parts)))
 
     def _find_stem(self, name: str) -> str:
@@ -138,13 +152,13 @@ class Symbols:
         functions, or its constructors; None where nothing does."""
         last = name.rpartition("::")[2]
         whole = f"{name}::~{last}", f"{name}::{last}"
-        if self._whole and (self._list_overloads(whole[0]) or name in self.tables):
+        if self.whole and (self._list_overloads(whole[0]) or name in self.tables):
             return whole[0] if whole[0] in self.stems else name
         destroyed = [one for one in functions.get(whole[0], ()) if _OWN.isdisjoint(one.traits)]
-        if not self._whole and destroyed and any(f"{last}::~{last}" in one for one in self._list_overloads(whole[0])):
+        if not self.whole and destroyed and any(f"{last}::~{last}" in one for one in self._list_overloads(whole[0])):
             return whole[0]
         made = [one for one in functions.get(whole[1], ()) if "deleted" not in one.traits]
-        if not self._whole and not any(f"{last}::{last}" in one for one in self._list_overloads(whole[1])):
+        if not self.whole and not any(f"{last}::{last}" in one for one in self._list_overloads(whole[1])):
             return None
         return whole[1] if made and self._has_all(whole[1], made) else None
 
@@ -157,19 +171,22 @@ def _make_key(one: Entity) -> tuple[object, ...]:
 
 
 def read_symbols(files: Iterable[tuple[str, bytes]], symbols: Symbols) -> None:
-    """Adds what libraries define. files: paths with what they hold; a shared library hides what its static one has."""
-    shared: dict[str, bytes] = {}
-    static: dict[str, bytes] = {}
+    """Adds what libraries define, and what headers name. files: paths with what they hold; a shared library hides what
+    its static one has. Several libraries may have one stem, with other versions in their names."""
+    shared: dict[tuple[str, bytes], None] = {}
+    static: dict[tuple[str, bytes], None] = {}
     for path, data in files:
         if found := _SHARED.match(path):
-            shared.setdefault(found[1], data)
+            shared[found[1], data] = None  # a link has what it leads to
         elif found := _STATIC.match(path):
-            static.setdefault(found[1], data)
-    for stem, data in (*shared.items(), *((s, d) for s, d in static.items() if not shared)):
+            static[found[1], data] = None
+        elif _HEADER.match(path):
+            symbols.called.update(_CALLED.findall(blank_directives(scan(data))[0]))
+    for stem, data in shared or static:
         with tempfile.NamedTemporaryFile() as file:
             file.write(data)
             file.flush()
-            options = ["-D"] if stem in shared else []
+            options = ["-D"] if shared else []
             ran = subprocess.run(
                 ["nm", *options, "-C", "--defined-only", file.name], capture_output=True, text=True, check=False,
                 errors="replace",
@@ -202,7 +219,7 @@ class SuiteSymbols:
             return Symbols(*msgspec.msgpack.decode(data, type=_Kept))
         symbols = Symbols()
         read_symbols(self._read_packages(packages), symbols)
-        form = (symbols.overloads, symbols.tables, symbols.stems)
+        form = (symbols.overloads, symbols.tables, symbols.stems, symbols.whole, symbols.called)
         write_file(kept, zstandard.ZstdCompressor(level=9).compress(msgspec.msgpack.encode(form)))
         return symbols
 
@@ -221,7 +238,7 @@ class SuiteSymbols:
             )  # fmt: skip
 
     def _read_packages(self, packages: Iterable[str]) -> Iterator[tuple[str, bytes]]:
-        """The libraries in downloaded packages: paths with what they hold."""
+        """The libraries and headers in downloaded packages: paths with what they hold."""
         for file in (file for name in packages for file in self._debs.glob(f"{name}_*.deb")):
             try:
                 held, _ = read_members_and_links(file)
@@ -229,13 +246,13 @@ class SuiteSymbols:
                 print(file.name, error, flush=True)
                 continue
             for path, member in held.items():
-                if _SHARED.match(path) or _STATIC.match(path):
+                if _SHARED.match(path) or _STATIC.match(path) or _HEADER.match(path):
                     yield path, member.data
             file.unlink()
 
     def list_libraries(self) -> Iterator[tuple[str, list[str]]]:
-        """Each library that manifests name, with the packages that hold it: the shared ones of the same source that its
-        development packages need, or these themselves where there are none."""
+        """Each library that manifests name, with the packages that hold it: its development packages, and the shared
+        ones of the same source that these need."""
         uses = count_uses()
         developing: dict[str, set[str]] = defaultdict(set)
         for name in self._fields:
@@ -249,8 +266,8 @@ class SuiteSymbols:
                         if load_libraries().find_by_package(other) == library}  # fmt: skip
             held = {other for name in names for other in self._depends.get(name, ())
                     if self._holds_libraries(other) and self._get_source(other) in sources}  # fmt: skip
-            packages = sorted(held or names)
-            if sum(int(self._fields[name]["Size"]) for name in packages) > _LARGEST:
+            packages = sorted(held | names)
+            if sum(int(self._fields[name]["Size"]) for name in held or names) > _LARGEST:
                 print(library, "is too large and was not read", flush=True)
                 continue
             yield library, packages

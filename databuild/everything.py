@@ -56,7 +56,8 @@ class Sources(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     Contents indices, by platform (`debian bookworm`). apt: an apt configuration with folders of its own, by release
     of Debian. gcc, python: a folder of unpacked packages, by version. stubs: folders `stdlib` of typeshed, oldest
     first. commands: folders of packages that define CMake commands. pypi: whether pip may download wheels.
-    opencv: the folder `cv2` of an unpacked wheel of opencv-contrib-python."""
+    opencv: the folder `cv2` of an unpacked wheel of opencv-contrib-python. release_tags: whether what ROS packages lost
+    at release tags is read anew, which nobody has reviewed then."""
 
     rosdistro: str = ""
     meta_ros: str = ""
@@ -72,6 +73,7 @@ class Sources(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     includes: IncludeSources = IncludeSources()
     pypi: bool = False
     opencv: str = ""
+    release_tags: bool = False
 
 
 class BuildStep(NamedTuple):
@@ -177,6 +179,17 @@ def _build_std_includes(sources: Sources, data: Path, own: Path) -> list[str] | 
     return _call("databuild.std_includes", *folders) if folders else None
 
 
+def _build_std_headers(sources: Sources, data: Path, own: Path) -> list[str] | None:
+    folders = [f"{version}={folder}" for version, folder in sources.gcc.items()]
+    return _call("databuild.std_headers", *folders, "--work", own, "--output", data) if folders else None
+
+
+def _build_components(sources: Sources, data: Path, own: Path) -> list[str] | None:
+    clones = ["--clones", sources.clones] if sources.clones else []
+    asked = [*_list_suites(sources.apt), *clones]
+    return _call("databuild.components", own, *asked, "--output", data) if asked else None
+
+
 def _build_python_modules(sources: Sources, data: Path, own: Path) -> list[str] | None:
     folders = (word for version, folder in sources.python.items() for word in ("--python", f"{version}={folder}"))
     return _call("databuild.python_modules", *sources.stubs, *folders, "--output", data) if sources.stubs else None
@@ -204,12 +217,14 @@ STEPS = (
     BuildStep("commands", ("commands.json.zst",), ("surfaces", "cmake-names"),
          lambda sources, data, own: _call("databuild.commands", *sources.commands) if sources.commands else None),
     BuildStep("std-names", ("std_names.json.zst",), (), _build_std_names),
-    BuildStep("std-includes", ("providers_std.json.zst",), (), _build_std_includes),
+    BuildStep("std-headers", ("std_headers.json",), (), _build_std_headers),
+    BuildStep("std-includes", ("providers_std.json.zst",), ("std-headers",), _build_std_includes),
     BuildStep("python-modules", ("python_modules.json",), (), _build_python_modules),
     BuildStep("fields", ("fields.json.zst",), ("manifests",),
          lambda sources, data, own: _call("databuild.fields", sources.clones, "--output", data / "fields.json.zst")
          if sources.clones else None),
     BuildStep("gazebo-topics", ("gazebo_topics.json.zst",), (), _read_clones("databuild.gazebo_topics")),
+    BuildStep("constants", ("constants.json.zst",), ("manifests",), _read_clones("databuild.constants")),
     BuildStep("gz-systems", ("gz_systems.json.zst",), (), _read_clones("databuild.gz_systems")),
     BuildStep("tree-nodes", ("tree_nodes.json.zst",), ("manifests",), _read_clones("databuild.tree_nodes")),
     BuildStep("conda", ("conda.json.zst",), (), _read_clones("databuild.conda")),
@@ -220,13 +235,17 @@ STEPS = (
          ("libraries.sqlite", "changes_debian.json.zst", "uses_debian.json", "changes_library_tags.json.zst"),
          ("surfaces", "providers"), _build_libraries),
     BuildStep("compiled", ("compiled.json.zst",), ("surfaces", "libraries"), _build_compiled),
+    BuildStep("components", ("components.json.zst",), (), _build_components),
+    BuildStep("release-tags", ("changes_ros_tags.json.zst",), ("surfaces",),
+         lambda sources, data, own: _call("databuild.release_tags", sources.clones, own, "--output", data)
+         if sources.clones and sources.release_tags else None),
     BuildStep("includes", ("includes.json.zst",), ("surfaces",), _build_includes),
     BuildStep("pypi", ("changes_pypi.json.zst",), (),
          lambda sources, data, own: _call("databuild.pypi", own, "--output", data) if sources.pypi else None),
     BuildStep("opencv-python", ("uses_opencv.json",), (),
          lambda sources, data, own: _call("databuild.opencv_python", sources.opencv, "--output", data)
          if sources.opencv else None),
-    BuildStep("superseded", (), ("python-std", "libraries", "pypi"),
+    BuildStep("superseded", (), ("python-std", "libraries", "pypi", "release-tags"),
          lambda sources, data, own: _call("databuild.superseded", "--write") if sources.clones else None),
 )  # fmt: skip
 """Every builder, each behind those whose files it reads."""
@@ -271,6 +290,7 @@ def read_sources(file: Path) -> Sources:
         ),
         pypi=named.pypi,
         opencv=locate(named.opencv),
+        release_tags=named.release_tags,
     )
 
 

@@ -6,7 +6,7 @@ Of each library the versions that some platform has are read, an older one and t
 one before has, the first releases of the minor versions between them are read too, until the one is found that lost
 them. Of names that a module lost before all wheels, such as those of PyQt4's QtGui, the newest wheel says where they
 are. Wheels are downloaded with pip, read as archives and deleted; nothing is installed or run. WORK keeps what was read
-of each.
+of each, so that a run that was stopped goes on with the next wheel.
 
 A name is in a version when a module, or its stub, binds it. It is gone from a version on when from then on no version
 has it and each surely lacks it: its module can be read in full and does not bind it, its module's `__getattr__` lists
@@ -21,12 +21,14 @@ import ast
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
 import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from functools import cached_property, partial
 from itertools import pairwise
 from pathlib import Path
@@ -79,6 +81,9 @@ _PYTHONS = ("3.12", "3.10", "3.8", "3.6", "3.14", "2.7")
 _MACHINES = ("manylinux_2_28_x86_64", "manylinux_2_17_x86_64", "manylinux2014_x86_64", "manylinux2010_x86_64",
              "manylinux1_x86_64")  # fmt: skip
 _LAST_PYTHON = 14
+_DOWNLOADS = "wheel-"
+_AT_A_TIME = 3
+"""Wheels that are downloaded at a time: pip mostly waits."""
 _MANY = 12
 """So many deprecated names of one module are one fact: that the module is not to be used."""
 _OLDER = 8
@@ -263,14 +268,23 @@ class PyPIIndex:
     def __init__(self, work: Path):
         self.work = work
         self.downloaded = 0
-        self._python = _PYTHONS[0]  # of the last wheel, which the next one is likely to be for
+        for left in work.glob(f"{_DOWNLOADS}*"):  # by a run that was stopped
+            shutil.rmtree(left)
 
     def list_versions(self, project: str) -> list[str]:
         """The final releases of a project, oldest first."""
-        said = self._run("index", "versions", "--ignore-requires-python", project)
-        found = re.search(r"^Available versions: (.+)$", said or "", re.MULTILINE)
+        said = self._run("index", "versions", "--ignore-requires-python", project).stdout
+        found = re.search(r"^Available versions: (.+)$", said, re.MULTILINE)
         versions = found[1].split(", ") if found else []
         return sorted(filter(_FINAL.match, versions), key=parse)
+
+    @cache_method
+    def list_wheels(self, project: str, python: str) -> frozenset[tuple[int, ...]]:
+        """The versions of a project, parsed, that have a wheel for a version of Python on Linux, or one for all. pip
+        lists them when it is asked for a version that nobody has."""
+        said = self._run(*_select_wheels(python), f"{project}==0.dev0").stderr
+        found = re.search(r"\(from versions: ([^)]*)\)", said)
+        return frozenset(map(parse, found[1].split(", "))) if found and found[1] != "none" else frozenset()
 
     def read(self, project: str, version: str) -> PyPIRelease | None:
         """A release; None for one without a wheel for Linux."""
@@ -278,7 +292,7 @@ class PyPIIndex:
         if kept.exists():
             data = kept.read_bytes()
             return msgspec.msgpack.decode(zstandard.decompress(data), type=PyPIRelease) if data else None
-        with tempfile.TemporaryDirectory(dir=self.work) as folder:
+        with tempfile.TemporaryDirectory(dir=self.work, prefix=_DOWNLOADS) as folder:
             wheel = self._download(project, version, Path(folder))
             release = read_wheel(wheel, version) if wheel is not None else None
         packed = zstandard.ZstdCompressor(level=9).compress(msgspec.msgpack.encode(release)) if release else b""
@@ -286,23 +300,31 @@ class PyPIIndex:
         return release
 
     def _download(self, project: str, version: str, folder: Path) -> Path | None:
-        machines = [word for machine in _MACHINES for word in ("--platform", machine)]
-        for python in sorted(_PYTHONS, key=lambda one: one != self._python):
-            self._run("download", "--quiet", "--no-deps", "--only-binary=:all:", "--python-version", python, *machines,
-                      "--dest", str(folder), f"{project}=={version}")  # fmt: skip
-            wheel = next(folder.glob("*.whl"), None)
-            if wheel is not None:
-                self.downloaded += wheel.stat().st_size
-                self._python = python
-                return wheel
-        return None
+        having = (python for python in _PYTHONS if parse(version) in self.list_wheels(project, python))
+        python = next(having, None)
+        if python is None:
+            return None
+        done = self._run(*_select_wheels(python), "--quiet", "--dest", str(folder), f"{project}=={version}")
+        wheel = next(folder.glob("*.whl"), None)
+        if wheel is None:
+            raise UserError(f"pip has no wheel of {project} {version}: {done.stderr.strip()[-300:]}")
+        self.downloaded += wheel.stat().st_size
+        return wheel
 
-    def _run(self, *arguments: str) -> str | None:
+    def _run(self, *arguments: str) -> subprocess.CompletedProcess[str]:
+        """Runs pip. Raises UserError where it fails otherwise than that there is no such version."""
         command = [sys.executable, "-m", "pip", "--disable-pip-version-check", *arguments]
         done = subprocess.run(command, capture_output=True, text=True, check=False, env={**os.environ}, timeout=900)
         if done.returncode and "No matching distribution" not in done.stderr:
             raise UserError(f"pip {' '.join(arguments)}: {done.stderr.strip()[-300:]}")
-        return done.stdout if done.returncode == 0 else None
+        return done
+
+
+def _select_wheels(python: str) -> list[str]:
+    """The arguments with which pip downloads wheels alone, of a version of Python on Linux."""
+    machines = (word for machine in _MACHINES for word in ("--platform", machine))
+    return ["download", "--no-deps", "--only-binary=:all:", "--ignore-requires-python", "--python-version", python,
+            *machines]  # fmt: skip
 
 
 # -- comparing ---------------------------------------------------------------------------------------------------------
@@ -345,6 +367,8 @@ def read_versions(
     older = [key for key in sorted(minors.values()) if key < min(ends)][-_OLDER:]
     starts = (older[len(older) * part // 4] for part in range(3) if older)
     ends.add(next((key for key in starts if get(key) is not None), min(ends)))
+    with ThreadPoolExecutor(_AT_A_TIME) as pool:
+        read.update(zip(sorted(ends), pool.map(get, sorted(ends)), strict=True))
     told = [key for key in sorted(ends) if get(key) is not None]
     for first, last in pairwise(told):
         narrow(first, last)

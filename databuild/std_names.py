@@ -277,6 +277,11 @@ def _list_entries(groups: dict[str, str]) -> Iterator[tuple[str, str]]:
             yield re.sub(r"<.*|\{\}$", "", entry), entry
 
 
+def list_names(text: str) -> list[str]:
+    """The names in an entry of NAMES, without how they are written."""
+    return [name for name, _ in _list_entries({"": text})]
+
+
 def find_home_headers() -> dict[str, str]:
     """Names to the header that is theirs."""
     of_std = {f"std::{name}": header for header, text in NAMES.items() for name, _ in _list_entries({header: text})}

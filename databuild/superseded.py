@@ -69,7 +69,7 @@ def judge_row(kind: str, package: str, old: str, new: str, removed_in: str, ros:
         return "answered"
     if not removed_in or (side not in _SIDES and side != "msg"):
         return "unknown"
-    if side == "api" and _is_bare(package, old):
+    if side == "api" and is_bare(package, old):
         return "bare"
     answers: list[str] = []
     for generation in (ros,) if ros else (1, 2):
@@ -119,7 +119,7 @@ def _get_availabilities(distro: str) -> Availabilities:
     return Availabilities(_get_target(distro), ahead=())
 
 
-def _is_bare(package: str, name: str) -> bool:
+def is_bare(package: str, name: str) -> bool:
     """Whether a name of C++ is a function or method without its scope. Macros, types and functions of C, which are
     called after their package, are global."""
     head = package.partition("_")[0]

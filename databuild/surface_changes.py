@@ -66,15 +66,17 @@ class Lines:
 
     def pack_lines(self) -> dict[tuple[str, int], bytes]:
         """Package and ROS generation to its line as it is stored."""
-        found: dict[tuple[str, int], bytes] = {}
+        return {key: pack(line) for key, line in self.list_lines()}
+
+    def list_lines(self) -> Iterator[tuple[tuple[str, int], Line]]:
+        """Packages with their ROS generation, each with its versions and what changed."""
         for (package, generation), versions in self._versions.items():
             events: dict[str, dict[str, tuple[ChangeEvent, ...]]] = {}
             for (side, name), reported in sorted(self._events.get((package, generation), {}).items()):
                 events.setdefault(side, {})[name] = tuple(reported)
             bases = _collect_bases(package, self._before[package, generation])
             approximate = tuple(self._approximate.get((package, generation), ()))
-            found[package, generation] = pack(Line(tuple(versions), events, bases, approximate))
-        return found
+            yield (package, generation), Line(tuple(versions), events, bases, approximate)
 
 
 def is_read_in_part(before: BuildSurface, after: BuildSurface) -> bool:

@@ -12,6 +12,7 @@ def read_tables() -> int:
     """Returns 0. Raises SnapshotError for a table that cannot be read."""
     # Some tables are read when the modules are imported.
     from ..impact.targets import changes, parameters
+    from ..impact.targets.constants import load_constants
     from ..impact.targets.distro.distro import DistroTarget
     from ..impact.targets.distro.known import list_known_distros
     from ..impact.targets.gazebo_topics import load_gazebo_topics
@@ -20,6 +21,7 @@ def read_tables() -> int:
     from ..impact.targets.providers.apt import load_apt
     from ..impact.targets.providers.archive import load_archives
     from ..impact.targets.providers.compiled import load_compiled
+    from ..impact.targets.providers.components import load_components
     from ..impact.targets.providers.includes import load_offered
     from ..impact.targets.providers.libraries import load_libraries
     from ..impact.targets.providers.library import include_roots
@@ -55,7 +57,7 @@ def read_tables() -> int:
     for load in (
         *(changes.load_rows, changes.load_transitive, parameters.load_renamed_parameters, load_sonames, load_offered),
         *(index_headers, load_gazebo_topics, load_gz_systems, load_tree_nodes, load_archives, load_compiled),
-        *(lambda: load_apt("ubuntu jammy"), lambda: load_shipped().about),
+        *(load_components, load_constants, lambda: load_apt("ubuntu jammy"), lambda: load_shipped().about),
     ):
         load()
     return 0

@@ -369,6 +369,11 @@ def test_explain(say, rule):
     assert said.status == 0 and said.out.startswith(f"{rule}: ")
 
 
+def test_explain_says_what_is_assumed_of_the_build_farm(say):
+    said = " ".join(say("explain", "unreleased-package").out.split())
+    assert "Assumed is that whatever the distro names at its last sync can be installed from its archive" in said
+
+
 def test_explain_lists_the_rules_and_knows_no_others(say):
     listed = say("explain").out
     assert all(f"  {rule} " in listed for rule in load_rules())

@@ -201,6 +201,22 @@ def test_repeats_are_notes():
     assert [each.line for each in found if each.repeated] == [4, 7, 8, 10, 16, 17]
 
 
+def test_a_warning_is_about_the_packages_whose_repeats_are_notes():
+    same = (Together("no joystick", everywhere=True),)
+    told = (
+        ("removed-header", "p"), ("removed-header", "q"), ("undeclared-package", "r"), ("removed-header", "q"),
+        ("removed-header", "p"),
+    )  # fmt: skip
+    diagnostics = [
+        (rule, hit(line=line, doubts=(Doubt.LATE,), together=same)._replace(package=package))
+        for line, (rule, package) in enumerate(told)
+    ]
+    lowered = lower_repeats(diagnostics, RULES)
+    assert [diagnostic.also for _, diagnostic in lowered] == [("q",), (), (), (), ()]
+    found = merged(*((name, "jazzy", diagnostic) for name, diagnostic in lowered))
+    assert next(each for each in found if each.severity == "warning").packages == ("p", "q")
+
+
 def test_what_another_rule_tells_of_the_same_place_with_more_weight_is_left_out():
     rules = {**RULES, "moved-header": RULES["removed-header"]._replace(yields_to=("removed-header",))}
     yielded = [

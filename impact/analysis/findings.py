@@ -58,16 +58,25 @@ def drop_outweighed(
 
 
 def lower_repeats(yielded: Sequence[tuple[str, Diagnostic]], rules: Mapping[str, Rule]) -> list[tuple[str, Diagnostic]]:
-    """What rules yield on one target, in order, with notes for the warnings whose cause another one tells."""
+    """What rules yield on one target, in order, with notes for the warnings whose cause another one tells; that one is
+    about their packages too, where its rule is the same."""
     shared = [_list_shared(rules[name], diagnostic) for name, diagnostic in yielded]
     counts = Counter(key for keys in shared for key in keys)
-    reported: set[tuple[str, str, str]] = set()
+    reported: dict[tuple[str, str, str], int] = {}
+    also: dict[int, dict[str, None]] = defaultdict(dict)
     result = []
-    for (name, diagnostic), keys in zip(yielded, shared, strict=True):
-        if not keys.keys().isdisjoint(reported):
+    for place, ((name, diagnostic), keys) in enumerate(zip(yielded, shared, strict=True)):
+        if told := [reported[key] for key in keys if key in reported]:
             diagnostic = diagnostic._replace(doubts=(*diagnostic.doubts, Doubt.REPEATED))
-        reported.update(key for key, few in keys.items() if counts[key] > few)
+            if yielded[told[0]][0] == name and yielded[told[0]][1].package != diagnostic.package:
+                also[told[0]][diagnostic.package] = None
+        for key, few in keys.items():
+            if counts[key] > few:
+                reported.setdefault(key, place)
         result.append((name, diagnostic))
+    for place, packages in also.items():
+        name, diagnostic = result[place]
+        result[place] = name, diagnostic._replace(also=(*diagnostic.also, *packages))
     return result
 
 

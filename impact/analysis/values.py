@@ -20,7 +20,6 @@ from ..values.matching import Mismatch
 from ..values.outcomes import Bounds, Reaction
 from ..values.survey import KINDS, Asked, Survey, make_records
 from ..values.witnesses import WitnessError, WitnessRecord, format_witnesses, parse_witnesses
-from .revision_compare import open_base_tree
 from .session import CheckError, open_tree
 
 _MOST_BYTES = 20_000_000
@@ -78,6 +77,9 @@ def explore_values(
                 ]
             changes: tuple[ValueChange, ...] = ()
             if base:
+                # Imported here alone: what compares revisions takes longer to import than a small workspace to read.
+                from .revision_compare import open_base_tree
+
                 before, _ = open_base_tree(tree, base)
                 now = [*report.callbacks, *joined.others]
                 changes = tuple(_compare(before, store, asked, publishers, survey.bounds, now, graph, jobs))

@@ -370,6 +370,9 @@ def values(
     array: int = _make_option("Elements of an array at most.", default=3, min=0, max=64),
     loops: int = _make_option("Rounds of a loop at most.", default=8, min=1),
     seconds: float = _make_option("Time for each callback.", default=20.0, min=0.1),
+    compiling: float = _make_option(
+        "Seconds of the processor for compiling a C++ source with all that it calls.", default=60.0, min=1.0
+    ),
     replay: bool = _make_option(
         "Run every example for real: compiles and runs code of the workspace, in processes of their own with limits.",
         "--replay",

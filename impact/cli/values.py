@@ -10,8 +10,8 @@ from .output import find_style, make_command, make_progress_bar, validate_choice
 
 @make_command("text", "json")
 def values(
-    path: Path, file: Path | None = None, *, node, topic, callback, kind, text, array, loops, seconds, replay, fuzz,
-    emit, out, workspace, publishers, base, follow_links, format, output, all, jobs, quiet,
+    path: Path, file: Path | None = None, *, node, topic, callback, kind, text, array, loops, seconds, compiling,
+    replay, fuzz, emit, out, workspace, publishers, base, follow_links, format, output, all, jobs, quiet,
 ) -> str | tuple[str, int]:  # fmt: skip
     """For which values callbacks act, do nothing, only log or crash, and which of them publishers send."""
     from ..analysis.values import explore_values
@@ -31,8 +31,8 @@ def values(
         raise UserError(f"{path}: is no folder; give a workspace")
     answer = explore_values(
         path, nodes=node, topics=topic, callbacks=callback, kinds=kind or ["subscriber"],
-        bounds=Bounds(text=text, array=array, loops=loops, seconds=seconds), replays=replay, fuzz_seconds=fuzz,
-        emit=emit, out=out, publishers=publishers, base=base,
+        bounds=Bounds(text=text, array=array, loops=loops, seconds=seconds, compiling=compiling), replays=replay,
+        fuzz_seconds=fuzz, emit=emit, out=out, publishers=publishers, base=base,
         jobs=jobs or count_cores(), progress=None if quiet else make_progress_bar(), follow_links=follow_links,
     )  # fmt: skip
     if format == "json":

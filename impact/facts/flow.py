@@ -55,7 +55,8 @@ class Guard(msgspec.Struct, frozen=True, array_like=True, gc=False):
     | kind | holds |
     |---|---|
     | if | the condition (also of `? :`, `and`, `&&` before a call, assert) is true |
-    | unless | it is false: an else branch, or what follows a branch that always jumps |
+    | unless | it is false: an else branch, or what follows a branch that always jumps; text `except X`, `catch (X)`:
+      nothing of this kind was raised in the try that begins at the line |
     | while | the loop goes round: condition of while and three-part for |
     | for | once for each of what is walked through; text: the whole head |
     | do | at least once; text: the condition at its end |

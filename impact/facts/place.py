@@ -36,10 +36,11 @@ class Reference(msgspec.Struct, frozen=True, array_like=True, gc=False):
     `package`, as `ros2 launch` does), `place` (a file or folder that code opens or writes to, or the folder of a file
     whose name is not known), `plugin` (class name), `library` (of plugins, without `lib` and `.so`), `distro file` (a
     file that is named by the distro, which `{distro}` stands for), `tree node` (of a behaviour tree), `tree port` (a
-    node, a blank and one of its ports), `command` (shell).
+    node, a blank and one of its ports), `macro` (a call of one of xacro), `command` (shell).
     package: its name, empty when only `name` is known. name: executable, file, class or command, empty for `package`.
     conditional: stands under if/unless/try, so it may never run. conditions: of those, where one tells about the
     machine, these and UNDECIDED for any other; so the mention surely counts where all hold.
+    macro: the macro of xacro that it stands in, which counts where something calls it; empty outside of all.
     arguments: names of the launch arguments that an include of the file gives; None for what is no include, or where
     they cannot all be known.
     """
@@ -52,3 +53,4 @@ class Reference(msgspec.Struct, frozen=True, array_like=True, gc=False):
     conditional: bool = False
     arguments: tuple[str, ...] | None = None
     conditions: tuple[Condition, ...] = ()
+    macro: str = ""

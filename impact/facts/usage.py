@@ -55,6 +55,11 @@ class Pattern(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return not self.arguments and self.before == _MEMBER
 
     @property
+    def shows_no_class(self) -> bool:
+        """True for calls of members of something whose class nothing shows."""
+        return self.calls and "->" in self.before and "::" not in self.before
+
+    @property
     def calls(self) -> bool:
         """True for calls of functions, which a package may have one of its own for."""
         return bool(self.arguments) and not self.names

@@ -1,7 +1,7 @@
 """What happened to publishing between a commit and its parent: statement by statement, publisher by publisher."""
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Literal, NamedTuple
 
@@ -11,7 +11,7 @@ from ..model.flow.code import get_tail
 from ..model.flow.graph import GuardAt
 from . import guards
 from .guards import Ways
-from .history import PackageState
+from .history import PackageFile, PackageState
 from .match import (
     SAME,
     OutletAt,
@@ -24,7 +24,7 @@ from .match import (
 )
 from .meaning import PARAMETER, put_given
 from .periods import parse_period
-from .statements import Gate, Outlet, PackageStatements, Path, PublishStatement, StatementStart
+from .statements import Gate, Outlet, PackageStatements, Path, PublishStatement, StatementStart, strip_spelling
 
 Kind = Literal["tightened", "widened", "equivalent", "changed", "new", "gone", "trigger changed"]
 KINDS: tuple[Kind, ...] = ("tightened", "widened", "equivalent", "changed", "new", "gone", "trigger changed")
@@ -80,12 +80,25 @@ class Side(NamedTuple):
     """The packages of a revision that differ from the other one's, with their digests."""
 
     packages: Sequence[tuple[PackageState, PackageStatements]]
+    read: Callable[[PackageFile], bytes] | None = None
 
     def list_statements(self) -> list[StatementPlace]:
         """All publish statements."""
         return [StatementPlace(
             s.name, d, statement, s.locate(statement.path)
         ) for s, d in self.packages for statement in d.statements]
+
+    def list_swallowed(self) -> frozenset[str]:
+        """The functions that may raise what is caught, and the code goes on."""
+        return frozenset(name for _, one in self.packages for name in one.swallowed)
+
+    def has_calls(self, calls: Iterable[str]) -> bool:
+        """Whether the sources have all of some calls, written as in Gate.tried."""
+        if self.read is None:
+            return False
+        files = [file for state, _ in self.packages for file in state.files if file.kind in ("cpp", "python")]
+        text = "\n".join(strip_spelling(self.read(file).decode("utf-8", "replace")) for file in files)
+        return all(re.search(rf"(?<!\w){re.escape(call)}", text) for call in calls)
 
     def list_unread(self) -> frozenset[str]:
         """The files that were not read in full."""
@@ -128,6 +141,7 @@ def changes(old: Side, new: Side, names: Renames = SAME) -> Iterator[LogicChange
     """All changes, rewordings included. names: what is called otherwise."""
     before, after = old.list_statements(), new.list_statements()
     pairs, gone, come = match_statements(before, after, names)
+    pairs = [(_pass_uncaught(one, other, new), _pass_uncaught(other, one, old)) for one, other in pairs]
     outlets = match_outlets(old.list_outlets(), new.list_outlets(), names)
     successors = {id(one.outlet): other.outlet for one, other in outlets}
     said = [list(_compare_statements(one, other, names, successors)) for one, other in pairs]
@@ -160,6 +174,28 @@ def changes(old: Side, new: Side, names: Renames = SAME) -> Iterator[LogicChange
         at = published.get(id(other.outlet))
         if at is not None:
             yield from _compare_outlets(one, other, at)
+
+
+def _pass_uncaught(at: StatementPlace, other: StatementPlace, theirs: Side) -> StatementPlace:
+    """A statement without the conditions that nothing was raised, where the other side has the same calls and does not
+    catch what they raise: that ends it there too."""
+    known = {gate.text for way in other.statement.ways for gate in way.gates if gate.tried}
+    asked = {gate for way in at.statement.ways for gate in way.gates if gate.tried and gate.text not in known}
+    swallowed = theirs.list_swallowed() if asked else frozenset()
+    passed = {
+        gate
+        for gate in asked
+        if swallowed.isdisjoint(call.partition("(")[0] for call in gate.tried) and theirs.has_calls(gate.tried)
+    }
+    if not passed:
+        return at
+    ways = tuple(
+        msgspec.structs.replace(way, gates=tuple(
+            msgspec.structs.replace(gate, kind="passed") if gate in passed else gate for gate in way.gates
+        ))
+        for way in at.statement.ways
+    )  # fmt: skip
+    return at._replace(statement=msgspec.structs.replace(at.statement, ways=ways))
 
 
 def _find_merged(
@@ -522,6 +558,12 @@ def _pair_starts(
             if fitting and alone and len([one for one in old if one[0] == key[0] or not same]) == len(fitting):
                 other = fitting[0]
                 yield frozenset(old.pop(key)), frozenset(new.pop(other))
+    for kind in {kind for kind, _ in old} & {kind for kind, _ in new}:
+        # A topic that is not known may be any of those that are left.
+        if any(start.open for side in (old, new) for key in side if key[0] == kind for start in side[key]):
+            sides = [[start for key in [key for key in side if key[0] == kind] for start in side.pop(key)]
+                     for side in (old, new)]  # fmt: skip
+            yield frozenset(sides[0]), frozenset(sides[1])
     for starts in old.values():
         yield frozenset(starts), frozenset()
     for starts in new.values():
@@ -557,6 +599,8 @@ def _has_unknown_start(ways: Sequence[Path]) -> bool:
 
 def _start_differs(old_ways: Sequence[Path], new_ways: Sequence[Path], names: Renames) -> str:
     old, new = old_ways[0].start, new_ways[0].start
+    if old.kind == new.kind and any(way.start.open for way in (*old_ways, *new_ways)):
+        return ""  # whether it is another topic is not known
     if old.kind == new.kind:
         if old.kind in _UNSAID or _normalize_detail(names.map_text(old.detail)) == _normalize_detail(new.detail):
             return ""
@@ -636,7 +680,7 @@ def _format_ways(ways: Sequence[Path], statement: PublishStatement) -> str:
 
 def _write_gate(gate: Gate, python: bool) -> str:
     text = gate.text
-    if gate.kind == "unless":
+    if gate.kind in ("unless", "passed"):
         denied = _DENIED.fullmatch(text)
         if denied:
             return denied[1]

@@ -10,6 +10,7 @@ from .guard_terms import (
     FALSE,
     FLIPPED,
     LONGEST,
+    NOW,
     NULL,
     TRUE,
     Conjunct,
@@ -315,6 +316,12 @@ class _Reader:
                     return Term("truth", "", (owner,))
                 if method == "load":
                     return owner  # of an atomic
+                if method == "toSec":
+                    return Term("call", "", (make_member(owner, "seconds"),))
+                if method == "now":
+                    return NOW  # of a node or its clock
+            if function.text in ("ros::Time::now", "now"):
+                return NOW
         owner, method = split_owner(function) if len(arguments) == 1 else (None, "")
         if owner is not None and method == "contains":
             return _make_contained(owner, arguments[0])

@@ -11,6 +11,7 @@ from .guard_terms import (
     FALSE,
     FLIPPED,
     LONGEST,
+    NOW,
     NULL,
     TRUE,
     Conjunct,
@@ -254,6 +255,11 @@ class _Reader:
         function = self.parse_term(node.func, depth)
         arguments = [self.parse_term(argument, depth) for argument in node.args]
         named = sorted((word.arg or "**", self.parse_term(word.value, depth)) for word in node.keywords)
+        if not arguments and not named:
+            owner, method = split_owner(function)
+            asks_clock = owner is not None and owner.kind == "call" and split_owner(owner.parts[0])[1] == "get_clock"
+            if function.text in ("rospy.Time.now", "rospy.get_rostime") or (method == "now" and asks_clock):
+                return NOW
         owner, method = split_owner(function) if len(arguments) == 1 and not named else (None, "")
         if owner is not None and method == "has_key":
             return Term("op", "in", (arguments[0], owner))

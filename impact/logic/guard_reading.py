@@ -99,8 +99,8 @@ def read(language: Language, kind: str, text: str) -> GuardReading:
         return read_case(language, text)
     if kind == "for":
         return reader.loop(text)
-    if kind in ("do", "with"):
-        # What runs once at least, or inside a context, runs under no condition.
+    if kind in ("do", "with", "passed"):
+        # What runs once at least, inside a context, or where something raised leads nowhere, runs under no condition.
         return GuardReading()
     if kind == "never":
         return GuardReading((Conjunct(f"never: {text}", FALSE),))

@@ -56,6 +56,8 @@ class GuardReading(NamedTuple):
 TRUE = Term("true")
 FALSE = Term("false")
 NULL = Term("null")
+NOW = Term("call", "", (Term("name", "now"),))
+"""The time that nodes of ROS 1 and ROS 2 go by."""
 FORMULAS = frozenset(("and", "or", "not", "truth", "compare", "true", "false"))
 FLIPPED = {"==": "!=", "!=": "==", "<": ">=", ">=": "<", ">": "<=", "<=": ">"}
 DEEPEST = 80

@@ -29,11 +29,11 @@ def describe_change(before: Sequence[Conjunct], after: Sequence[Conjunct], asked
         if other is not None:
             removed.remove(other)
             added.remove(piece)
-            clauses.append(_describe_replacement(other, piece))
+            clauses.append(describe_replacement(other.text, piece.text))
     removed = [piece for piece in removed if not asked(after, piece)]
     added = [piece for piece in added if not asked(before, piece)]
     if len(removed) == len(added) == 1 and not clauses and _is_block(added[0]) == _is_block(removed[0]):
-        return _describe_replacement(removed[0], added[0])
+        return describe_replacement(removed[0].text, added[0].text)
     more = " too" if before else ""
     for words, pieces, end in (
         ("only when", [piece for piece in added if not _is_block(piece)], more),
@@ -64,6 +64,8 @@ def describe_ways(before: Sequence[Sequence[Conjunct]], after: Sequence[Sequence
             return f"only when {_format_alternatives(added)} too"
         if added == [[]]:
             return f"no longer asks for {_format_alternatives(removed)}"
+        if [] in added and [] not in removed:
+            return f"also without {_format_alternatives(removed)}"
     clauses = [*_format_way_clauses("also", added), *_format_way_clauses("no longer", removed)]
     return ", ".join(clauses)
 
@@ -104,10 +106,10 @@ def _exclude_pieces(pieces: Sequence[Conjunct], others: Sequence[Conjunct]) -> l
     return result
 
 
-def _describe_replacement(old: Conjunct, new: Conjunct) -> str:
+def describe_replacement(old: str, new: str) -> str:
     """What one condition became; of long ones the part that differs, with a few words around it."""
-    was, now = old.text.split(" "), new.text.split(" ")
-    if max(len(old.text), len(new.text)) > _LONGEST:
+    was, now = old.split(" "), new.split(" ")
+    if max(len(old), len(new)) > _LONGEST:
         start = sum(1 for _ in takewhile(_is_same, zip(was, now, strict=False)))
         same = sum(1 for _ in takewhile(_is_same, zip(was[start:][::-1], now[start:][::-1], strict=False)))
         was, now = _cut_words(was, start, same), _cut_words(now, start, same)

@@ -17,7 +17,7 @@ from ..model.flow.graph import GuardAt
 from .guard_reading import Language, collect_pieces, drop_this
 from .guard_solver import Solver, Undecided
 from .guard_terms import FALSE, TRUE, Conjunct, Term, join, list_names, rewrite
-from .guard_words import describe_ways
+from .guard_words import describe_replacement, describe_ways
 
 Kind = Literal["tightened", "widened", "equivalent", "changed"]
 Guards = Sequence[GuardAt]
@@ -63,6 +63,9 @@ def explain_ways(old: Ways, new: Ways, reading: NameReading) -> str:
     asks for `x > 3`", "`x > 3` was `x > 0`"; empty when the two say the same."""
     if compare_ways(old, new, reading) == "equivalent":
         return ""
+    replaced = _find_replaced(old, new)
+    if replaced is not None:
+        return describe_replacement(*replaced)
     before, after, solver = _build_sides(old, new, reading)
 
     def is_implied(pieces: Sequence[Conjunct], piece: Conjunct) -> bool:
@@ -92,6 +95,21 @@ def is_unlikely(guard: GuardAt, language: Language) -> bool:
         return not Solver(language, MILLISECONDS).is_likely(_join_pieces(pieces))
     except Undecided:
         return False
+
+
+def _find_replaced(old: Ways, new: Ways) -> tuple[str, str] | None:
+    """The one condition that differs, before and after, where some ways ask for it and others for its contrary; None
+    where more differs."""
+    sides = [{(guard.kind, guard.text) for way in ways for guard in way} for ways in (old, new)]
+    both = [{text for kind, text in side if kind == "if" and ("unless", text) in side} for side in sides]
+    gone, come = both[0] - {text for _, text in sides[1]}, both[1] - {text for _, text in sides[0]}
+    if len(gone) != 1 or len(come) != 1:
+        return None
+    was, is_now = gone.pop(), come.pop()
+    changed = frozenset(
+        tuple((kind, is_now if text == was else text) for kind, text in way) for way in _collect_texts(old)
+    )
+    return (was, is_now) if changed == _collect_texts(new) else None
 
 
 def _collect_texts(ways: Ways) -> frozenset[tuple[tuple[str, str], ...]]:

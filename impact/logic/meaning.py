@@ -164,6 +164,8 @@ class Meaning:
             return None  # it keeps what the last call left
         python = fn.source.facts.language == "python"
         changed = {access.kind for access in fn.facts.accesses if access.path == name}
+        if _is_primitive(made[0].type) and not self._is_set_inside(name, fn):
+            changed.discard("escape")  # what is handed on is a copy
         if len(made) == 1:
             if made[0].operator != "=" or changed - {"pass"}:
                 return None
@@ -171,6 +173,12 @@ class Meaning:
         if changed - {"write"} - ({"pass"} if python else set()) or depth + 1 >= _DEEPEST:
             return None
         return self._merge_values(name, made, fn, depth, line)
+
+    def _is_set_inside(self, name: str, fn: Fn) -> bool:
+        """Whether a lambda of a function assigns to a variable of this name."""
+        inside = (f"{fn.name}::lambda@", f"{fn.name}.lambda@")
+        functions = self.code.functions_in.get(fn.source.path, ())
+        return any(name in one.assigned for one in functions if one.name.startswith(inside))
 
     def _merge_values(self, name: str, rows: Sequence[Assignment], fn: Fn, depth: int, line: int) -> str | None:
         """What a variable is at a line after its assignments, of which each may be under conditions."""
@@ -383,6 +391,12 @@ def select_given(text: str, given: Given) -> Given:
     """Those of some parameters that a text names."""
     words = set(_WORD.findall(text)) if given else ()
     return tuple(one for one in given if one[0] in words)
+
+
+def _is_primitive(type_: str) -> bool:
+    """Whether a variable of this type is a number or truth value of its own."""
+    words = type_.replace("const", "").split()
+    return bool(words) and all(word in _PRIMITIVE for word in words)
 
 
 def _is_equated(text: str, start: int, end: int) -> bool:

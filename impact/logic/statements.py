@@ -19,7 +19,7 @@ from ..model.flow.nodes import BuiltPackage, asks_for_name, find_entry_point
 from ..model.flow.qos import find_qos
 from ..model.flow.values import FlowValue
 from .history import PackageFile, PackageState
-from .meaning import Given, Meaning, select_given, split_conjuncts
+from .meaning import Given, Meaning, format_expression, select_given, split_conjuncts
 from .periods import parse_period
 
 _LIVE = frozenset(
@@ -32,13 +32,17 @@ _LOOPS = frozenset(("while", "do"))
 _CALLS = re.compile(r"\w\s*[(\[]|\]\s*\(")
 _NAMES = re.compile(r"(?<![\w.>:\"'])(?:this->|self\.)?([A-Za-z_]\w*)(?![\w\"':])")
 """Variables in a condition, without what stands behind a point or in a scope."""
+_RUN_AS_PROGRAM = re.compile(r"__name__\s*==\s*(['\"])__main__\1")
+_CAUGHT = re.compile(r"except (.*)|catch \((.*)\)", re.DOTALL)
 _WORDS = frozenset(("and", "or", "not", "is", "in", "true", "false", "True", "False", "None", "nullptr", "NULL"))
 
 
 class Gate(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A guard. kind, text and of as in GuardAt; meaning: the text with local variables and predicates of the package
     put back into what they stand for, empty where that is the text. fixed: what it asks is the same wherever its
-    function asks it, since nothing there changes it."""
+    function asks it, since nothing there changes it. tried: of a guard that says that nothing was raised, the calls
+    that might do so, each up to the end of its first argument and without blanks. kind: `passed` besides, for such a
+    guard that asks for nothing, since what is raised leads nowhere anyway."""
 
     kind: str
     text: str
@@ -47,14 +51,17 @@ class Gate(msgspec.Struct, frozen=True, array_like=True, gc=False):
     fixed: bool = False
     given: Given = ()
     names: tuple[str, ...] = ()
+    tried: tuple[str, ...] = ()
 
 
 class StatementStart(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What makes a statement run. kind: as in Trigger, `loop` where a loop does that the start of a program leads to,
-    `thread` for one that nothing leads to; detail: the period, topic or service, the rate of a loop."""
+    `thread` for one that nothing leads to; detail: the period, topic or service, the rate of a loop. open: the detail
+    is an expression, and which topic or service that is is not known."""
 
     kind: str
     detail: str = ""
+    open: bool = False
 
 
 class Path(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -115,13 +122,15 @@ class Inlet(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 class PackageStatements(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A package at one commit. unread: files that were not read, or not in full. unclear: path, function and callee of
-    calls that may publish, of which it is not known."""
+    calls that may publish, of which it is not known. swallowed: names of functions of which it does not matter to what
+    follows a call that they raised something."""
 
     statements: tuple[PublishStatement, ...] = ()
     outlets: tuple[Outlet, ...] = ()
     inlets: tuple[Inlet, ...] = ()
     unread: tuple[str, ...] = ()
     unclear: tuple[tuple[str, str, str], ...] = ()
+    swallowed: tuple[str, ...] = ()
 
 
 EMPTY = PackageStatements()
@@ -162,6 +171,41 @@ def _list_unclear(join: Join) -> tuple[tuple[str, str, str], ...]:
     )
 
 
+def _find_handler(fn: Fn, what: str, line: int) -> int:
+    """The line of the first handler of a try that begins at a line and catches something; 0 where none is seen."""
+    lines = [row.line for row in fn.facts.guards if row.kind == "catch" and row.line >= line]
+    last = min((row.line for row in fn.facts.guards if row.kind == "catch" and row.text == what and row.line >= line),
+               default=0)  # fmt: skip
+    return min([one for one in lines if one <= last], default=last)
+
+
+def _is_in_handler(fn: Fn, call: FlowCall, line: int) -> bool:
+    """Whether a call stands in a handler of a try that begins at a line, or of one inside it."""
+    place, rows = call.guard, fn.facts.guards
+    while 0 <= place < len(rows):
+        if rows[place].kind == "catch" and rows[place].line >= line:
+            return True
+        place = rows[place].outer
+    return False
+
+
+def _list_swallowed(join: Join) -> tuple[str, ...]:
+    """The names of functions called before a handler behind which the function that has it goes on, or ends."""
+    found: set[str] = set()
+    for fn in join.code.functions:
+        rows = fn.facts.guards
+        left = {
+            (caught[1] or caught[2], row.line)
+            for row in rows
+            if row.kind == "unless" and (caught := _CAUGHT.fullmatch(row.text))
+        }
+        for row in rows:
+            if row.kind == "catch" and not any(what == row.text and line <= row.line for what, line in left):
+                before = (call for call in fn.facts.calls if call.line <= row.line)
+                found.update(get_tail(call.callee) for call in before if not _is_in_handler(fn, call, row.line))
+    return tuple(sorted(found))
+
+
 class _Digester:
     def __init__(self, join: Join, state: PackageState):
         self.join, self.state = join, state
@@ -172,6 +216,16 @@ class _Digester:
             (site.use.fn.source.path, site.use.call.line)
             for site in join.sites.endpoints
             if site.implied and site.role == "subscriber"
+        }
+        # Of a function that is given names and callbacks it is not known which name is that of which callback.
+        self.unnamed = {
+            (site.use.fn.source.path, site.use.call.line)
+            for site in join.sites.endpoints
+            if site.role != "publisher"
+            and (
+                not any(value.text for value in site.names)
+                or (len({value.text for value in site.names}) > 1 and len(site.callbacks) > 1)
+            )
         }
 
     def build_digest(self) -> PackageStatements:
@@ -188,7 +242,7 @@ class _Digester:
         known = {site: place for site in join.sites.endpoints if (place := places.get(id(site))) is not None}
         published: list[PublishStatement] = []
         for statement in join.sites.statements:
-            if statement.through:
+            if statement.through or self._has_no_publisher(statement):
                 continue
             numbers: list[int] = []
             for site in statement.sites:
@@ -200,8 +254,34 @@ class _Digester:
         return PackageStatements(
             tuple(published), tuple(outlets), tuple(
                 dict.fromkeys(inlets)
-            ), _list_unread_files(join), _list_unclear(join)
+            ), _list_unread_files(join), _list_unclear(join), _list_swallowed(join)
         )
+
+    def _has_no_publisher(self, statement: Statement) -> bool:
+        """Whether a statement in Python is of a member that nothing assigns, of a class of which all is seen."""
+        fn, code = statement.use.fn, self.join.code
+        before, _, name = self.join.calls.get_receiver(statement.use).rpartition(".")
+        owner = code.find_owner(fn) if before == "this" and fn.source.facts.language == "python" else None
+        if statement.sites or owner is None or owner.key in code.derived:
+            return False
+        classes = code.list_bases(owner)
+        if not self._assigned.isdisjoint((key, name) for key in ("", *(cls.key for cls in classes))):
+            return False
+        bases = ((base, cls) for cls in classes for base in cls.facts.bases if base not in ("", "object"))
+        return all(code.find_class(base, cls.source, cls.name) is not None for base, cls in bases)
+
+    @cached_property
+    def _assigned(self) -> frozenset[tuple[str, str]]:
+        """What something is assigned to, or the result of a call is kept in: members by class and name, with an empty
+        class where they are of another object, or of a class that is not seen."""
+        found: set[tuple[str, str]] = set()
+        for fn in self.join.code.functions:
+            owner = self.join.code.find_owner(fn)
+            key = owner.key if owner is not None else ""
+            for target in (*(row.target for row in fn.facts.assignments), *(call.target for call in fn.facts.calls)):
+                before, _, name = target.rpartition(".")
+                found.add((key if before == "this" else "", name))
+        return frozenset(found)
 
     def _find_owners(self, fn: Fn) -> list[Owner]:
         found: list[Owner] = [one for one in self.running if fn in one.functions]
@@ -282,7 +362,8 @@ class _Digester:
 
     def _build_path(self, way: CallWay, fn: Fn, own: tuple[GuardAt, ...]) -> Path:
         trigger, guards = self._find_trigger(way, fn), (*way.guards, *own)
-        start = StatementStart(trigger.kind, self._find_period(trigger) or trigger.detail)
+        is_open = trigger.kind != "timer" and (trigger.path, trigger.line) in self.unnamed
+        start = StatementStart(trigger.kind, self._find_period(trigger) or trigger.detail, is_open)
         unsaid = trigger.kind in ("start", "unknown")
         unled = trigger.kind == "unknown" or (trigger.kind == "start" and trigger.detail not in ("", "main"))
         gates: list[Gate] = []
@@ -295,10 +376,11 @@ class _Digester:
             if unsaid and (lives or (guard.kind in _LOOPS and trigger.kind == "start")):
                 kind = "loop" if trigger.kind == "start" else "thread"
                 start = StatementStart(kind, self._find_rate(guard) or (start.detail if start.kind == kind else ""))
-            if asked:
+            if asked and not _is_program(guard):
                 meaning, names = self.meaning.resolve_guard(guard) if asked == guard.text else ("", ())
                 known = select_given(meaning or asked, given.get((guard.path, guard.of), ()))
-                gates.append(Gate(guard.kind, asked, guard.of, meaning, self._is_fixed(guard), known, names))
+                tried = self._list_tried(guard)
+                gates.append(Gate(guard.kind, asked, guard.of, meaning, self._is_fixed(guard), known, names, tried))
         if start.kind in ("start", "unknown"):
             start = StatementStart(start.kind)
         return Path(start, tuple(gates), self._find_root(trigger) if unled else "", way.functions, way.times)
@@ -330,6 +412,24 @@ class _Digester:
         """The whole name of the function that a way begins in."""
         functions = self.join.code.functions_in.get(trigger.path, ())
         return next((fn.name for fn in functions if fn.facts.line == trigger.line), trigger.detail)
+
+    @cache_method
+    def _list_tried(self, guard: GuardAt) -> tuple[str, ...]:
+        """The calls that may raise what a guard says that it was not, as in Gate."""
+        fn = self.join.code.by_name.get((guard.path, guard.of))
+        caught = _CAUGHT.fullmatch(guard.text) if guard.kind == "unless" else None
+        if fn is None or caught is None:
+            return ()
+        what = caught[1] or caught[2]
+        end = _find_handler(fn, what, guard.line)
+        python = fn.source.facts.language == "python"
+        found: dict[str, None] = {}
+        for call in fn.facts.calls if end else ():
+            if guard.line <= call.line <= end and not _is_in_handler(fn, call, guard.line):
+                first = format_expression(call.arguments[0], python, fn, call.line) if call.arguments else ""
+                text = f"{get_tail(call.callee)}({first or ''}"
+                found[strip_spelling(text)] = None
+        return tuple(found)
 
     @cache_method
     def _is_fixed(self, guard: GuardAt) -> bool:
@@ -397,6 +497,16 @@ class _Digester:
                 kind = get_tail(each.value.text).lower() if each.value.text else "rate"
                 return f"{kind} {paces[0]}"
         return ""
+
+
+def _is_program(guard: GuardAt) -> bool:
+    """Whether a guard only asks that the file is run, and not imported."""
+    return guard.kind == "if" and bool(_RUN_AS_PROGRAM.fullmatch(guard.text))
+
+
+def strip_spelling(text: str) -> str:
+    """A text without blanks, line breaks and the choice of quotes."""
+    return "".join(text.split()).replace("'", '"')
 
 
 def _describe_number(value: FlowExpr, fn: Fn) -> str:

@@ -38,6 +38,7 @@ def compare_sides(
     if is_unchanged(old, new):
         return []
     files = renamed()
+    old, new = old._replace(read=read), new._replace(read=read)
     found = list(changes(old, new, Renames({}, files)))
     if old.packages and new.packages and any(change.kind != "equivalent" for change in found):
         words = find_renamed_words([one for one, _ in old.packages], [one for one, _ in new.packages], files, read)

@@ -14,6 +14,8 @@ from ...edges.reach import walk
 from ..facts.condition import Condition
 from .cmake.build import DefinedMacro
 
+# What a macro is defined as that `#if` takes for true: nothing written is 1, and a name that is none of a macro is 0.
+_TRUE = re.compile(r"|0*[1-9]\d*[uUlL]*|true|0[xX]0*[1-9a-fA-F][\da-fA-F]*")
 _ASKED = re.compile(r"(?:defined\s*\(\s*(?P<whether>[A-Za-z_]\w*)\s*\)|(?P<value>[A-Za-z_]\w*))\Z")
 
 
@@ -46,8 +48,8 @@ class Macros:
             return condition
         name, value = found.group("whether"), found.group("value")
         macros = self._tests.get(name or value, ())
-        if not macros or (value and any(m.value in ("0", "OFF", "FALSE") for m in macros)):
-            return condition
+        if not macros or (value and not all(_TRUE.fullmatch(m.value) for m in macros)):
+            return condition  # what it is defined as, or what that expands to, is not known to be true
         deciding = tuple(m for m in macros if not m.target)
         if not deciding:
             given = {m.target for m in macros}

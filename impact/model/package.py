@@ -23,6 +23,7 @@ from ..facts.condition import Condition
 from ..facts.cpp.lexical import CppFile, Include
 from ..facts.cpp.schema import CodeSpot
 from ..facts.cpp.tree_nodes import TreeNodes, mark_extended, merge_tree_nodes
+from ..facts.distro_branches import BranchedName, ComparedDistro
 from ..facts.distros import DistroFile
 from ..facts.interface import Interface
 from ..facts.kinds import HEADER_ENDINGS, make_empty
@@ -286,7 +287,7 @@ class ValueUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 class LostOverrideUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A method that is to override one of a base class of the workspace, and does not. kind, base, method, class_,
-    declared: as LostOverride has them."""
+    declared, outer: as LostOverride has them."""
 
     kind: str
     base: str
@@ -296,6 +297,7 @@ class LostOverrideUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     at: At
     role: str
     conditions: tuple[Condition, ...] = ()
+    outer: tuple[str, ...] = ()
 
 
 class InterfaceClaim(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -310,14 +312,15 @@ class InterfaceClaim(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class BranchedUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A name of a Python file that is bound in branches on the distro alone, see facts/python/branches.py. branches:
-    the conditions of each after which it can be used."""
+    """What is there in branches on the distro alone, see BranchedName of facts/distro_branches.py. branches: the
+    conditions of each after which it can be used."""
 
     name: str
     at: At
     role: str
     branches: tuple[tuple[Condition, ...], ...]
     function: str = ""
+    kind: str = "name"
 
 
 class AbstractUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -439,6 +442,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     # What controllers ask for of it.
     claims: tuple[InterfaceClaim, ...] = ()
     branched: tuple[BranchedUse, ...] = ()
+    # What Python and launch files compare ROS_DISTRO with.
+    compared: tuple[tuple[str, At], ...] = ()
     # Files that targets compile, each with what it surely uses of libraries that need a link: functions that it calls
     # and classes of which it makes objects.
     compiled: tuple[tuple[str, tuple[str, ...]], ...] = ()
@@ -452,7 +457,7 @@ _INWARD = {
         "includes", "imports", "needed_headers", "reaches", "inner", "written_inner", "syntax", "allows", "problems",
         "uses", "members", "python_api", "cpp_api", "unresolved_receivers", "undefined", "own_calls", "unsearched",
         "unincluded", "undeclared", "settings", "testing", "python_offer", "values", "errors", "compiled",
-        "lost_overrides", "abstract", "claims", "branched",
+        "lost_overrides", "abstract", "claims", "branched", "compared",
     }
 }  # fmt: skip
 
@@ -656,6 +661,8 @@ class PackageJoin:
         data_words: list[str] = []
         references, plugins, registered, setup, requirements, interfaces = [], [], [], [], [], []
         controlled: list[tuple[str, ControlledJoint]] = []
+        branched: list[tuple[str, BranchedName]] = []
+        compared: list[tuple[str, ComparedDistro]] = []
         tree_nodes: list[TreeNodes] = []
         trees: set[str] = set()
         modelled: set[str] = set()
@@ -685,6 +692,8 @@ class PackageJoin:
                 references.extend((path, r) for r in getattr(facts, "references", ()))
             elif isinstance(facts, PythonFile):
                 python[path] = facts
+                branched.extend((path, one) for one in facts.branched)
+                compared.extend((path, one) for one in facts.compared)
                 references.extend((path, r) for r in facts.references)
                 if any(item.module.split(".")[0] == "launch_ros" for item in facts.imports):
                     launches.append((path, "launch_python"))
@@ -713,6 +722,8 @@ class PackageJoin:
                 trees.update(getattr(facts, "trees", ()))
                 modelled.update(getattr(facts, "modelled", ()))
                 controlled.extend((path, joint) for joint in getattr(facts, "joints", ()))
+                branched.extend((path, one) for one in getattr(facts, "branched", ()))
+                compared.extend((path, one) for one in getattr(facts, "compared", ()))
         unused |= leftover
         if self.build_type == "catkin":  # which starts programs from the source space too
             own = (r for p, r in references if r.package == self.name and self.find_role(p) is None)
@@ -829,11 +840,13 @@ class PackageJoin:
             controlled_joints=tuple(controlled),
             claims=tuple(self.list_claims(parameters)),
             branched=tuple(
-                BranchedUse(one.name, At(path, one.line, one.column), self.find_python_role(path),
-                            tuple(branch.conditions for branch in one.branches), one.function)
-                for path, facts in python.items()
-                for one in facts.branched
+                BranchedUse(one.name, At(path, one.line, one.column),
+                            self.find_python_role(path) if path in python
+                            else self.find_role(path) or ("aside" if path in unused else "run"),
+                            tuple(branch.conditions for branch in one.branches), one.function, one.kind)
+                for path, one in branched
             ),
+            compared=tuple((one.name, At(path, one.line, one.column)) for path, one in compared),
             own_fields=tuple(
                 FieldOfWorkspace(
                     use.type, use.steps, At(path, use.line, use.column), self.find_python_role(path), use.conditions
@@ -1092,7 +1105,7 @@ class PackageJoin:
                     around = conditions + self.macros.resolve_conditions(found.spot.conditions or (), targets)
                     at = At(path, found.spot.line, found.spot.column)
                     lost.append(LostOverrideUse(found.kind, found.base, found.method, found.class_, found.declared, at,
-                                                role, around))  # fmt: skip
+                                                role, around, found.outer))  # fmt: skip
                 left_out[class_.name] = list(classes.list_left_out(class_, path))
         return lost, list(self._list_abstract(roles, {name: found for name, found in left_out.items() if found}))
 

@@ -101,19 +101,27 @@ class UnknownContents:
 
     @cache_method
     def _list_of_unknown_contents(self, package: Package) -> list[str]:
-        unknown = {*self._list_unknown_along(package), *self.list_unstored(package)}
+        unknown = {*self._list_unknown_along(package), *self.list_unread(package)}
         names = self._view.build_environment(package)
         return [name for name in names if name in unknown or self.is_carried_library(name)]
 
     @cache_method
-    def list_unstored(self, package: Package) -> tuple[str, ...]:
+    def list_unread(self, package: Package) -> tuple[str, ...]:
         """Declared releases of the target whose files are not stored, so that they may install what they bundle, and
-        under names of their own. Packages that are called as those of interfaces are install no more than these."""
+        under names of their own, and packages of the workspace, the package among them, whose build downloads
+        something or calls the build of something else. Packages that are called as those of interfaces are install no
+        more than these."""
         view = self._view
-        return tuple(
-            name for name in view.collect_declared(package)
-            if name not in view.workspace.packages and not INTERFACES.search(name)
-            and view.target.find_version(name) is not None and view.offers.find_package(name) is None
+        declared = view.collect_declared(package)
+        building = (one for one in view.workspace.packages.values() if one.build.builds_others)
+        near = view.build_environment(package)
+        return (
+            *(one.name for one in building if one.name == package.name or one.name in near),
+            *(
+                name for name in declared
+                if name not in view.workspace.packages and not INTERFACES.search(name)
+                and view.target.find_version(name) is not None and view.offers.find_package(name) is None
+            ),
         )  # fmt: skip
 
     def is_made_apart(self, package: Package, wanted: str) -> bool:

@@ -120,6 +120,9 @@ def render_alike(report: Report, alike: Sequence[Finding], style: Style) -> list
             caret = paint(style, finding.severity, "^" * width)
             lines.append(f"  {' ' * margin} {paint(style, 'dim', '|')} {' ' * offset}{caret}")
     lines += [f"  {line}" for line in render_more_places(alike[1:])]
+    if finding.also:
+        names = [*map(escape, finding.also[:_PLACES]), *(["..."] if len(finding.also) > _PLACES else [])]
+        lines.append(f"  and in {format_count(len(finding.also), 'other package')}: {', '.join(names)}")
     for label, text in evidence.format_lines(finding):
         shown, room = escape(text), style.width - len(label) - 4
         # Declarations can be long; what they were called comes first.

@@ -84,7 +84,8 @@ def summarize_values(answer: ValuesAnswer) -> str:
 def _describe_bounds(bounds: Bounds) -> str:
     return (
         f"within texts of {bounds.text} bytes, arrays of {bounds.array} elements, loops of {bounds.loops} rounds and "
-        f"{bounds.seconds:g} s for each callback; values of other sizes were not looked at"
+        f"{bounds.seconds:g} s for each callback ({bounds.compiling:g} s for compiling its source); values of other "
+        "sizes were not looked at"
     )
 
 
@@ -108,6 +109,9 @@ def _render_callback(one: CallbackAnswer, everything: bool, style: Style) -> Ite
     yield from lay_out([LinePart(f"ways: {counts}", "dim"), LinePart(f"{one.seconds:.1f} s", "dim")], style, 2, 6)
     for reason, count in sorted(one.unknown.items(), key=lambda row: -row[1])[: None if everything else 3]:
         yield from lay_out([LinePart("unknown:", "warning"), LinePart(f"{reason} ({count})")], style, 2, 6)
+    if one.beyond:
+        text = f"larger {', '.join(one.beyond[:3])} than --array and --text allow may lead to something else"
+        yield from lay_out([LinePart("bound:", "warning"), LinePart(text)], style, 2, 6)
     if one.left:
         yield from lay_out([LinePart("unknown:", "warning"), LinePart(f"{one.left} ways were not ended")], style, 2, 6)
     if one.assumed:
@@ -229,7 +233,7 @@ def render_values_json(answer: ValuesAnswer, version: str) -> str:
         "tool": {"name": "rosimpact", "version": version},
         "bounds": {"text": answer.report.bounds.text, "array": answer.report.bounds.array,
                    "loops": answer.report.bounds.loops, "paths": answer.report.bounds.paths,
-                   "seconds": answer.report.bounds.seconds},
+                   "seconds": answer.report.bounds.seconds, "compiling": answer.report.bounds.compiling},
         "replayed": answer.report.replayed,
         "offline": answer.report.is_offline,
         "callbacks": [_describe_callback(one) for one in answer.report.callbacks],
@@ -245,7 +249,8 @@ def _describe_callback(one: CallbackAnswer) -> dict[str, Any]:
         "callback": one.callback, "kind": one.kind, "language": one.language, "path": one.path, "line": one.line,
         "type": one.message_type, "topics": one.topics, "nodes": one.nodes, "reason": one.reason,
         "ways": {result.value: count for result, count in one.counts.items()}, "left": one.left,
-        "seconds": round(one.seconds, 3),
+        "seconds": round(one.seconds, 3), "compiled_in": round(one.compiled_in, 3), "rounds": one.rounds,
+        "beyond": one.beyond,
         "fields": [
             {
                 "field": field.path, "kind": field.kind.value,

@@ -6,6 +6,7 @@ from typing import NamedTuple
 from ..facts.condition import Condition
 from ..model.package import ImportUse, SyntaxUse, find_folder_role
 from ..targets.distro.distro import DistroTarget
+from .packages.install_rules import may_stay_behind
 from .vocabulary import Diagnostic, Doubt, Package, TargetView, Upcoming, list_place_doubts, rate_upcoming
 
 
@@ -13,7 +14,9 @@ def list_python_doubts(view: TargetView, package: Package, role: str, path: str)
     """What speaks against an error at a place in a Python file of a package. A script of ROS 1 that nothing installs or
     starts is no example yet: it is run where it lies."""
     script = role == "aside" and package.build_type == "catkin" and path in package.linked.scripts
-    return (Doubt.LATE,) if script and is_no_example(package, path) else list_place_doubts(view, role)
+    if (script and is_no_example(package, path)) or (role == "run" and may_stay_behind(view, package, path)):
+        return (Doubt.LATE,)
+    return list_place_doubts(view, role)
 
 
 def is_no_example(package: Package, path: str) -> bool:
@@ -52,6 +55,8 @@ def report_refused(
         for refused in find(package, target):
             use = refused.use
             doubts = (*list_place_doubts(view, use.role), *refused.doubts, use.role != "test" or Doubt.TEST)
+            if use.role == "run" and may_stay_behind(view, package, use.at.path):
+                doubts = (*doubts, Doubt.LATE)
             data = {"version": f"3.{target.python}", "needs": f"3.{refused.needs}", "replacement": refused.replacement}
             data["horizon"] = ahead.name if ahead is not None else ""
             one = Diagnostic(use.at, refused.subject, package.name, data, refused.kind, doubts)

@@ -35,6 +35,7 @@ class Doubt(enum.Enum):
     LATE = "it is not known to be reached whenever the package is built or started", "warning"
     GUARDED = "a test in the code itself stands around it, which most likely tells the versions apart", "note"
     UNCOMPILED = "nothing in the package compiles it on its own", "note"
+    UNINSTALLED = "nothing is known to install or start the file that it stands in", "note"
     EXAMPLE = "it is an example, or documentation", "note"
     DISPENSABLE = "builds and programs go on without it, at least where a condition does not hold", "note"
     # Of the evidence

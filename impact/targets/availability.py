@@ -399,6 +399,8 @@ class Availabilities:
                 return Availability(symbol, "present", package, offer.version)
             if alike := _find_misspelled_name(offer, side, name):
                 return Availability(symbol, "not yet", package, offer.version, alike=alike, sure=False, form="never")
+            if side == "plugin" and _names_plugins(offer, name) and not self.offers.has_plugin_owner(name):
+                return Availability(symbol, "not yet", package, offer.version, sure=False, form="never")
         if offered is None or not decides(offer, offered):
             return Availability(symbol, "unknown", package, offer.version)
         state = _STATES[offered.state]
@@ -572,6 +574,14 @@ def _find_misspelled_name(offer: PackageOffer, side: str, name: str) -> str:
         return ""
     alike = _find_similar_name(offer, side, name)
     return alike if _is_misspelling(name, alike) else ""
+
+
+def _names_plugins(offer: PackageOffer, name: str) -> bool:
+    """Whether a name begins as those of the plugins that a version has, all of which are known: as `package/Class`. A
+    class may lie in the namespace of another package."""
+    if "/" not in name or not offer.exact or any(part == "plugins" for part, _ in offer.build.unknown):
+        return False
+    return any(_split(plugin.name)[0] == _split(name)[0] for plugin in offer.build.plugins)
 
 
 def _is_misspelling(name: str, alike: str) -> bool:

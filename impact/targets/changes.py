@@ -251,6 +251,12 @@ def find_function(label: str, language: str, kind: str = "call-changed") -> str:
     return pattern.word if pattern is not None and pattern.calls and pattern.language == language else ""
 
 
+def shows_no_class(label: str) -> bool:
+    """Whether a use calls a member of something whose class nothing shows, by its label."""
+    row = load_uses().get(label)
+    return row is not None and row.pattern is not None and row.pattern.shows_no_class
+
+
 def shows_no_type(label: str) -> bool:
     """Whether a use is a member of something whose type nothing shows, by its label."""
     row = load_uses().get(label)

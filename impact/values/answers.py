@@ -85,7 +85,9 @@ class SentThrough:
 class CallbackAnswer:
     """One callback. kind: `subscriber`, `service`, `timer`, `action`. reason: why it was not explored; empty else.
     unknown: why ways are unknown, with their number. left: ways that were not ended. stood_for: what the harness stands
-    in for. is_bare: no constructor of the node was run, so that members are empty."""
+    in for. is_bare: no constructor of the node was run, so that members are empty. compiled_in: seconds of the
+    processor that compilers worked for its source and what that calls; rounds: how often they ran. beyond: arrays and
+    texts of which larger ones than were looked at may lead to something else."""
 
     callback: str
     kind: str
@@ -107,6 +109,9 @@ class CallbackAnswer:
     left: int = 0
     seconds: float = 0.0
     is_bare: bool = False
+    compiled_in: float = 0.0
+    rounds: int = 0
+    beyond: tuple[str, ...] = ()
 
     @property
     def is_explored(self) -> bool:

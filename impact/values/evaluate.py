@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
+
+import z3
 
 from .answers import CallbackExample, FieldSets, SentThrough, SentValues
 from .narrowing import ParameterValues, list_sent_ways, narrow_to_parameters
-from .outcomes import CallbackPath, CodeLine, Exploration, InputKind, Reaction, Sent
+from .outcomes import CallbackPath, CodeLine, CrashKind, Exploration, InputKind, Reaction, Sent
 from .projection import make_witness, project_fields
 from .sent_values import project_sent
 
 _MOST_EXAMPLES = 24
 _MOST_SENT_FIELDS = 60
+_MOST_ENDING = 60
+_BY_SIZE = (CrashKind.INDEX, CrashKind.EMPTY, CrashKind.EXCEPTION)
+"""Crashes of which an array may be the cause that is too short."""
 
 
 class Evaluated(NamedTuple):
@@ -30,6 +35,8 @@ class Evaluated(NamedTuple):
     asked: tuple[str, ...] = ()
     """Types of messages that the callback had to do with."""
     is_bare: bool = False
+    beyond: tuple[str, ...] = ()
+    """Arrays and texts of which larger ones may lead to something else."""
 
 
 def evaluate(
@@ -41,7 +48,8 @@ def evaluate(
     counts = dict(Counter(path.result for path in exploration.paths))
     unknown = dict(Counter(path.reason for path in exploration.paths if path.result is Reaction.UNKNOWN))
     assumed = tuple(sorted({name for path in exploration.paths for name in path.assumed}))
-    fields = tuple(_list_fields(exploration, names, seconds))
+    beyond = tuple(dict.fromkeys(_name_array(name) for name in _list_exceeded(exploration)))
+    fields = tuple(_list_fields(exploration, names, seconds, is_whole=not beyond))
     sent = tuple(list_sent(narrow_to_parameters(exploration, parameters), seconds))
     return Evaluated(
         counts,
@@ -53,17 +61,55 @@ def evaluate(
         exploration.left,
         exploration.seconds,
         is_bare=exploration.is_bare,
+        beyond=beyond,
     )
 
 
-def _list_fields(exploration: Exploration, names: Mapping[str, Mapping[int, str]], seconds: float) -> list[FieldSets]:
+def _list_exceeded(exploration: Exploration) -> list[str]:
+    """The sizes of arrays and texts that are looked at as far as it goes and may lead to something else beyond: those
+    that a condition asked for larger ones of, and those at whose largest every way is a crash."""
+    found = set(exploration.exceeded)
+    crashing = [path for path in exploration.paths if path.crash in _BY_SIZE]
+    ending = [path for path in exploration.paths if path.result not in (Reaction.CRASH, Reaction.UNKNOWN)]
+    if crashing and len(ending) <= _MOST_ENDING:
+        for name, size in exploration.inputs.items():
+            if size.kind is InputKind.SIZE and size.most and name not in found:
+                largest = size.term == size.most
+                if _is_any_possible(crashing, largest, name) and not _is_any_possible(ending, largest):
+                    found.add(name)
+    return sorted(found)
+
+
+def _is_any_possible(paths: Sequence[CallbackPath], condition: z3.BoolRef, name: str = "") -> bool:
+    """Whether a condition can hold on one of some ways, as far as the solver tells in time; with the name of an input,
+    of those alone that speak of it."""
+    for path in paths:
+        if name and not any(name in str(one) for one in path.condition):
+            continue
+        solver = z3.Solver()
+        solver.set("timeout", 200)
+        solver.add(*path.condition, condition)
+        if solver.check() != z3.unsat:
+            return True
+    return False
+
+
+def _name_array(size: str) -> str:
+    return size.removesuffix(".size").removeprefix("msg.")
+
+
+def _list_fields(
+    exploration: Exploration, names: Mapping[str, Mapping[int, str]], seconds: float, is_whole: bool
+) -> list[FieldSets]:
+    """is_whole: what larger arrays lead to is known, too; else nothing is surely ignored."""
     found: list[FieldSets] = []
     for one in project_fields(exploration, seconds):
         path = one.path.removeprefix("msg.")
         sign = "int" if one.is_signed else "uint"
         known = names.get(f"{sign}{one.bits}", {}) if one.kind is InputKind.INTEGER else {}
         found.append(FieldSets(
-            path, one.kind, one.bits, one.is_signed, dict(one.values), one.surely_unhandled, one.surely_ignored, known,
+            path, one.kind, one.bits, one.is_signed, dict(one.values), one.surely_unhandled if is_whole else None,
+            one.surely_ignored if is_whole else None, known,
         ))  # fmt: skip
     return found
 

@@ -125,7 +125,8 @@ class CallbackPath:
 
 @dataclass(frozen=True)
 class Bounds:
-    """How far an exploration goes; printed with every answer. seconds: time limit of one callback."""
+    """How far an exploration goes; printed with every answer. seconds: time limit of one callback; compiling: seconds
+    of the processor for a source file of C++ with all that it calls."""
 
     text: int = 8
     array: int = 3
@@ -133,6 +134,7 @@ class Bounds:
     paths: int = 4000
     seconds: float = 20.0
     memory: int = 2_000_000_000
+    compiling: float = 60.0
 
 
 class UnknownFunction(NamedTuple):
@@ -148,7 +150,8 @@ class Exploration:
     """All that was found out about one callback. left: ways that were begun and not ended (time or number of paths);
     where it is not 0, nothing is surely ignored. functions: variables that stand for what z3 does not know (the sine of
     a term), with what calculates them. fixed: inputs that have one value, where it was narrowed to that. is_bare:
-    no constructor of the node was run."""
+    no constructor of the node was run. exceeded: inputs, sizes of arrays and texts, that a condition was about which
+    only larger ones fulfil."""
 
     inputs: dict[str, SymbolicInput] = field(default_factory=dict)
     paths: list[CallbackPath] = field(default_factory=list)
@@ -159,6 +162,7 @@ class Exploration:
     functions: dict[str, UnknownFunction] = field(default_factory=dict)
     fixed: Mapping[str, int] = field(default_factory=dict)
     is_bare: bool = False
+    exceeded: frozenset[str] = frozenset()
 
 
 class Witness(NamedTuple):

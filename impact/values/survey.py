@@ -288,7 +288,7 @@ class Survey:
             path, line = one.function_place
             answer = CallbackAnswer(
                 one.callback, one.kind, "cpp", path, line, one.message_type, one.topics, one.nodes, self.bounds,
-                one.reason, stood_for=one.stood_for,
+                one.reason, stood_for=one.stood_for, compiled_in=one.compiled_in, rounds=one.rounds,
             )  # fmt: skip
             identity = one.kind, one.path, one.line, one.callback
             yield _Target(identity, answer, _name_constants(one.constants, self.workspace.ros), one)
@@ -321,7 +321,13 @@ class Survey:
         def find_section(type_: str) -> Section | None:
             package, _, name = type_.partition("/")
             interface = self._definitions.find(f"{package}/msg/{name}")
-            return interface.sections[0] if interface is not None and interface.sections else None
+            if interface is not None and interface.sections:
+                return interface.sections[0]
+            for end, place in (("Request", 0), ("Response", 1)):
+                service = self._definitions.find(f"{package}/srv/{name.removesuffix(end)}")
+                if name.endswith(end) and service is not None and len(service.sections) > place:
+                    return service.sections[place]
+            return None
 
         return Messages(find_section, self.workspace.ros)
 
@@ -342,7 +348,9 @@ class Survey:
                 continue
             # The top of a module has no name.
             name = one.site.name if one.kind == "main" else one.name
-            code = CallbackCode(module, name, line, one.message_type)
+            code = CallbackCode(
+                module, name, line, one.message_type, one.joined, one.place, one.kind, self.workspace.ros == 2
+            )
             yield _Target(_identify(one), answer, self._name_python_constants(one.message_type), code=code)
 
     def _name_python_constants(self, type_: str) -> Mapping[str, Mapping[int, str]]:
@@ -375,7 +383,7 @@ class Survey:
         own = list_folders([path])
         place = ReplayPlace(
             self.root, (*own, *[one for one in folders if one not in own]), target.code.module.name,
-            target.answer.callback, target.answer.message_type, path,
+            target.answer.callback, tuple(target.code.list_messages()), path, target.code.kind == "service",
         )  # fmt: skip
         with tempfile.TemporaryDirectory(prefix="rosimpact-replay-") as folder:
             messages = self._make_messages()
@@ -436,8 +444,11 @@ def _refuse(callback: CppCallback) -> str:
     place = f"{callback.path}:{callback.line}"
     if callback.function is None:
         return f"{place}: the callback is not known"
-    if callback.kind in ("service", "action"):
-        return f"{place}: callbacks of a {callback.kind} in Python are not explored"
+    if callback.kind == "action":
+        return f"{place}: callbacks of an action in Python are not explored"
+    parameters = [one for one in callback.function.facts.parameters if one.default is None and one.name != "self"]
+    if callback.is_filtered and not callback.joined and len(parameters) != 1:
+        return f"{place}: which of the messages that a synchronizer gives is this one is not known"
     is_known = callback.message_type or callback.kind in ("timer", "main")
     return "" if is_known else f"{place}: the type of its message is not known"
 
@@ -533,12 +544,14 @@ def _explore_entries(prepared: PreparedCallback, bounds: Bounds) -> Exploration:
 def _read_result(answer: CallbackAnswer, result: Evaluated | Died, root: Path) -> CallbackAnswer:
     if isinstance(result, Died):
         return replace(answer, reason=f"the exploration ended early: {result.why}")
+    if not result.counts and not result.left:
+        return replace(answer, reason="no way of making the node leads to the callback", seconds=result.seconds)
     examples = tuple(replace(one, place=_shorten_place(one.place, root)) for one in result.examples)
     sent = tuple(_shorten_sent(one, root) for one in result.sent)
     return replace(
         answer, counts=result.counts, fields=result.fields, examples=examples, sent=sent,
         unknown=result.unknown, assumed=result.assumed, left=result.left, seconds=result.seconds,
-        is_bare=result.is_bare,
+        is_bare=result.is_bare, beyond=result.beyond,
     )  # fmt: skip
 
 

@@ -1,5 +1,8 @@
 """Which names of libraries need a link: by what `nm` prints of them, and by sources."""
 
+import subprocess
+from pathlib import Path
+
 import pytest
 from rosimpact.databuild.compiled import Symbols, build_table, read_sources, read_symbols
 from rosimpact.databuild.extract import cpp
@@ -67,6 +70,46 @@ def test_short_names_of_c_are_words_of_anything():
     assert symbols.select(cpp.extract(b"int reel(int length);").entities) == {}
 
 
+DECLARED_BY_MACROS = b"""
+#define WINCH_API(type) extern type
+WINCH_API(int) winch_reel(int length);
+WINCH_EXTERN int WINCH_CALL winch_brake WINCH_ARGS((int force));
+#define winch_shown(one) winch_reel(one)
+static inline int winch_rest(void) { return 0; }
+"""
+
+
+def test_functions_of_c_that_macros_declare_need_a_link_too():
+    symbols = Symbols()
+    read_symbols([("usr/include/winch.h", DECLARED_BY_MACROS), ("usr/share/doc/winch.h", b"winch_hidden(")], symbols)
+    symbols.add("winch", "".join(f"0 T winch_{one}\n" for one in ("reel", "brake", "shown", "hidden")))
+    symbols.add("winch", "0 T winch_other(int)\n0 W winch_rest\n")
+    # A macro is no function, and a library has functions that no header names.
+    assert set(symbols.select(())) == {"winch_reel", "winch_brake"}
+
+
+def test_libraries_that_differ_in_the_version_in_their_names_are_all_read(monkeypatch):
+    read = []
+
+    def run(command, **options):
+        read.append(Path(command[-1]).read_bytes())
+        return subprocess.CompletedProcess(command, 0, f"0 T winch_of_{read[-1].decode()}\n", "")
+
+    monkeypatch.setattr(subprocess, "run", run)
+    symbols = Symbols()
+    where = "usr/lib/x86_64-linux-gnu"
+    files = {
+        "libwinch-0.1.so.4.4": b"old",
+        "libwinch-0.1.so.4": b"old",
+        "libwinch-1.0.so.0": b"new",
+        "libwinch.a": b"a",
+    }
+    read_symbols([(f"{where}/{name}", data) for name, data in files.items()], symbols)
+    # A link is not read twice, and a static library not beside a shared one.
+    assert read == [b"old", b"new"]
+    assert symbols.stems == {"winch_of_old": "winch", "winch_of_new": "winch"}
+
+
 def test_sources_tell_the_same_without_namespaces():
     source = b"""
 namespace winch {
@@ -122,6 +165,9 @@ def test_a_name_of_two_owners_tells_of_neither():
         ("YAML::LoadFile", "yaml-cpp", ()),
         ("tinyxml2::XMLDocument", "tinyxml2", ()),
         ("curl_easy_init", "curl", ()),
+        ("libusb_init", "libusb", ()),
+        ("usb_find_devices", "libusb", ()),
+        ("yaml_parser_load", "libyaml", ()),
         ("ros::init", "roscpp", (1,)),
         ("rclcpp::init", "rclcpp", (2,)),
         ("cv_bridge::toCvCopy", "cv_bridge", (1, 2)),

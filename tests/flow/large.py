@@ -11,10 +11,10 @@ def name_topic(number: int) -> str:
     return f"/space_{number // 2 % 10}/topic_{number}"
 
 
-def build_large_graph() -> Graph:
-    """Each node says two topics and hears up to four; each tenth topic nobody hears."""
+def build_large_graph(size: int = NODES) -> Graph:
+    """Each node says two topics and hears up to four; each tenth topic nobody hears. size: the number of nodes."""
     nodes, ends, publishes = [], [], []
-    for n in range(NODES):
+    for n in range(size):
         package, name = f"package_{n % 20}", f"/space_{n % 10}/node_number_{n}"
         uncertain = ("IfCondition(LaunchConfiguration('sim'))",) if n % 25 == 3 else ()
         launches = (LAUNCHES[n % 3], LAUNCHES[0]) if n % 10 == 1 else (LAUNCHES[n % 3],)
@@ -28,7 +28,7 @@ def build_large_graph() -> Graph:
         # A quarter of the nodes hears what the quarter before it says, and here and there what a later one says.
         before = n // 50 * 100 - 100
         heard = [before + (n * k + j) % 100 for k, j in ((2, 0), (3, 7), (7, 4))][: n % 4] if n >= 50 else []
-        heard += [(13 * n + 5) % TOPICS] if n % 10 == 0 else []
+        heard += [(13 * n + 5) % (2 * size)] if n % 10 == 0 else []
         for k, topic in enumerate(said):
             how = "default" if topic % 20 == 7 else "literal"
             qos = Qos("best_effort" if topic % 3 else "reliable", "volatile", "keep_last", 5 + n % 2)
@@ -45,5 +45,5 @@ def build_large_graph() -> Graph:
             ))  # fmt: skip
         ends.append(Endpoint("publisher", topic="/rosout", type="rcl_interfaces/Log", line=20, implied=True, **at))
     return Graph(
-        tuple(nodes), tuple(ends), tuple(publishes), (), (), Coverage(len(ends), len(ends), 0, NODES), root="large"
+        tuple(nodes), tuple(ends), tuple(publishes), (), (), Coverage(len(ends), len(ends), 0, size), root="large"
     )

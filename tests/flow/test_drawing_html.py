@@ -16,6 +16,7 @@ from rosimpact.impact.model.flow.graph import (
     Graph,
     GuardAt,
     Node,
+    OutsideNode,
     ParameterUse,
     Publish,
     Qos,
@@ -62,6 +63,7 @@ def hostile() -> Graph:
         parameters=(ParameterUse(PAYLOAD, PAYLOAD, "declared", PAYLOAD, 7, PAYLOAD),),
         coverage=Coverage(3, 2, 0, 1, (PAYLOAD,), (Unresolved(PAYLOAD, PAYLOAD, PAYLOAD, 8, PAYLOAD),)),
         root=PAYLOAD,
+        outside=(OutsideNode(PAYLOAD, PAYLOAD, PAYLOAD, PAYLOAD, PAYLOAD, (PAYLOAD,), (PAYLOAD,)),),
     )  # fmt: skip
 
 
@@ -141,6 +143,17 @@ def test_filters(page, field, value, left):
     browser.find_element("css selector", "button[type=reset]").click()
     browser.execute_async_script("setTimeout(arguments[0], 50)")
     assert labels(browser) == ALL
+
+
+def test_possible_nodes_stand_beside_the_graph(page):
+    joy = OutsideNode("/joy", "joy", "joy_node", "node", "a.launch.xml:4", ("$(env SIM)",), ("sticks",))
+    include = OutsideNode("", "nav2_bringup", "launch/bringup.launch.py", "launch file", "a.launch.xml:6")
+    browser = page(structs.replace(NOW, outside=(joy, include)))
+    assert "Possible nodes, whose code is not here (2)" in texts(browser, "#panel h3")
+    said = texts(browser, "#panel li.unsure")
+    assert said[0] == "/joy joy/joy_nodeuses sticksonly if $(env SIM)a.launch.xml:4"
+    assert said[1].startswith("any of a launch file nav2_bringup/launch/bringup.launch.py")
+    assert "node /joy" not in " ".join(labels(browser)), "they are no boxes: nothing tells what they talk about"
 
 
 def test_only_what_is_near(page):

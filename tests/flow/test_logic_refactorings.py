@@ -744,3 +744,194 @@ def test_a_latch_with_a_name_is_a_latch() -> None:
     assert compare({"talker.cpp": latched}, {"talker.cpp": named}) == []
     off = {"talker.cpp": named.replace("latch = true", "latch = false")}
     assert compare({"talker.cpp": latched}, off) == [("trigger changed", "durability `volatile` was `transient_local`")]
+
+
+LOOKED = "x = self.look(msg)"
+TRIED = "try:\n    x = self.look(msg)\nexcept %s:\n    %s"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        # What was not caught ended the callback, too.
+        (LOOKED, TRIED % ("KeyError", "return"), []),
+        (TRIED % ("(KeyError, TypeError)", "return"), TRIED % ("KeyError", "return"), []),
+        (LOOKED, TRIED % ("KeyError", "print(1)\n    raise"), []),
+        # What was not tried before, or was caught and the callback went on.
+        ("pass", TRIED % ("KeyError", "return"), [("tightened", "only when `no except KeyError`")]),
+        ("self.look(2)", TRIED % ("KeyError", "return"), [("tightened", "only when `no except KeyError`")]),
+        (
+            TRIED % ("KeyError", "x = 1"),
+            TRIED % ("KeyError", "return"),
+            [("tightened", "only when `no except KeyError`")],
+        ),
+        (TRIED % ("KeyError", "return"), TRIED % ("KeyError", "x = 1"), [("widened", "no longer asks")]),
+    ],
+)
+def test_what_is_raised_leads_nowhere_whether_it_is_caught_or_not(
+    old: str, new: str, said: list[tuple[str, str]]
+) -> None:
+    bodies = [
+        "".join(f"        {line}\n" for line in f"{text}\nself.pub.publish(msg)".split("\n")) for text in (old, new)
+    ]
+    found = compare_python(*bodies)
+    assert [kind for kind, _ in found] == [kind for kind, _ in said], found
+    for (_, why), (_, wanted) in zip(found, said, strict=True):
+        assert wanted in why
+
+
+@pytest.mark.parametrize(
+    ("old", "caught", "said"),
+    [
+        ("look(msg);", "return;", []),
+        ("", "warn(); throw;", []),
+        ("", "return;", [("tightened", "only when `no catch (const std::exception& e)`")]),
+        (
+            "try { look(msg); } catch (const std::exception& e) { warn(); }",
+            "return;",
+            [("tightened", "only when `no catch (const std::exception& e)`")],
+        ),
+    ],
+)
+def test_what_is_thrown_leads_nowhere_whether_it_is_caught_or_not(
+    old: str, caught: str, said: list[tuple[str, str]]
+) -> None:
+    tried = f"try {{ look(msg); }} catch (const std::exception& e) {{ {caught} }} pub_.publish(msg);"
+    assert compare_cpp(say(f"{old} pub_.publish(msg);"), say(tried)) == said
+
+
+def test_a_condition_that_an_else_denies_is_said_once() -> None:
+    told = "        if ASKED:\n            self.tell()\n        elif self.late > 4:\n            self.tell()\n"
+    told += "    def tell(self):\n        self.pub.publish(1)\n"
+    narrower = told.replace("ASKED", "self.halted and self.halted != 2")
+    said = [("tightened", "`self.halted and self.halted != 2` was `self.halted`")]
+    assert compare_python(told.replace("ASKED", "self.halted"), narrower) == said
+    later = told.replace("ASKED", "self.halted").replace("4", "5")
+    said = [("tightened", "`self.late > 5` was `self.late > 4`")]
+    assert compare_python(told.replace("ASKED", "self.halted"), later) == said
+
+
+def test_a_further_way_without_a_condition_keeps_what_all_ask() -> None:
+    told = "    def tell(self):\n        if self.late > 4:\n            self.pub.publish(1)\n"
+    looped = f"        for sample in self.monitor:\n            self.tell()\n{told}"
+    asked = looped.replace("            self.tell()", "            if self.active:\n                self.tell()", 1)
+    found = compare_python(looped, f"        self.tell()\n{asked}")
+    assert [why for _, why in found] == ["also without `for sample in self.monitor`"]
+
+
+OVERLOADS = """
+void tell(std_msgs::String m) { pub_.publish(m); }
+void tell(const std_msgs::Bool& m) { more_pub_.publish(m); }
+ros::Publisher more_pub_;
+"""
+
+
+def test_of_overloads_the_one_is_called_that_takes_what_is_given() -> None:
+    told = "std_msgs::String text; if (heard_) tell(text);"
+    more = f"std_msgs::Bool flag; {told} if (late_) tell(flag);"
+    assert compare_cpp(OVERLOADS + say(told), OVERLOADS + say(more)) == []
+    other = told.replace("heard_", "seen_")
+    assert [why for _, why in compare_cpp(OVERLOADS + say(more), OVERLOADS + say(more.replace(told, other)))] == [
+        "`seen_` was `heard_`"
+    ]
+
+
+def test_a_truth_value_that_is_handed_on_is_still_what_it_was_made_with() -> None:
+    plain = say("if (pub_.getNumSubscribers()) pub_.publish(msg);")
+    named = say("bool seen = pub_.getNumSubscribers() > 0; Globals::draw = seen; if (seen) pub_.publish(msg);")
+    assert compare_cpp(plain, named) == []
+    changed = named.replace("if (seen)", "spin([&]() { seen = false; }); if (seen)")
+    assert [kind for kind, _ in compare_cpp(plain, changed)] == ["changed"]
+
+
+def test_time_that_has_passed_is_asked_alike_in_both_kinds_of_ros() -> None:
+    one = say("if ((ros::Time::now() - last_).toSec() > 3.0) pub_.publish(msg);")
+    for other in ("now()", "this->now()", "node_->now()", "get_clock()->now()"):
+        assert compare_cpp(one, say(f"if (({other} - last_).seconds() > 3.0) pub_.publish(msg);")) == []
+    steady = say("if ((std::chrono::steady_clock::now() - last_).seconds() > 3.0) pub_.publish(msg);")
+    assert [kind for kind, _ in compare_cpp(one, steady)] == ["changed"]
+    longer = say("if ((now() - last_).seconds() > 5.0) pub_.publish(msg);")
+    assert [kind for kind, _ in compare_cpp(one, longer)] == ["tightened"]
+    asked = "        if {} > self.last:\n            self.pub.publish(msg)"
+    old, new = asked.format("rospy.Time.now()"), asked.format("self.get_clock().now()")
+    assert compare_python(old, new) == []
+    assert [kind for kind, _ in compare_python(old, asked.format("time.time()"))] == ["changed"]
+
+
+def test_a_topic_that_is_not_known_is_no_other_one() -> None:
+    body = say("pub_.publish(msg);")
+    old = CPP.replace("BODY", body)
+    later = "void listen(const std::string& topic) { sub_ = nh_.subscribe(topic, 1, &Talker::onInput, this); }"
+    made = 'sub_ = nh_.subscribe("in", 1, &Talker::onInput, this);'
+    handed = CPP.replace("BODY", f"{body} {later}").replace(made, "")
+    assert compare({"talker.cpp": old}, {"talker.cpp": handed}) == []
+    assert compare({"talker.cpp": handed}, {"talker.cpp": handed.replace("topic", "name")}) == []
+    other = old.replace('"in"', '"other"')
+    said = [("trigger changed", "messages of `other`, was `in`")]
+    assert compare({"talker.cpp": old}, {"talker.cpp": other}) == said
+
+
+SERVED = """
+import rospy
+from std_msgs.msg import String
+from std_srvs.srv import Empty
+
+class Talker:
+    def __init__(self):
+        self.pub = rospy.Publisher("out", String, queue_size=1)
+        SERVE
+
+    def serve(self, name, callback):
+        return rospy.Service("arm/" + name, Empty, callback)
+
+    def on_open(self, request):
+        self.pub.publish("open")
+
+    def on_close(self, request):
+        if request.now:
+            self.pub.publish("closed")
+
+if __name__ == "__main__":
+    rospy.init_node("talker")
+    Talker()
+    rospy.spin()
+"""
+
+
+def test_a_service_that_a_helper_makes_is_the_same_service() -> None:
+    named = SERVED.replace("SERVE", "\n        ".join(
+        f'rospy.Service("arm/{one}", Empty, self.on_{one})' for one in ("open", "close")
+    ))  # fmt: skip
+    helped = SERVED.replace("SERVE", "\n        ".join(
+        f'self.serve("{one}", self.on_{one})' for one in ("open", "close")
+    ))  # fmt: skip
+    assert compare({"talker.py": named}, {"talker.py": helped}) == []
+    other = named.replace('"arm/close"', '"arm/shut"')
+    assert compare({"talker.py": named}, {"talker.py": other}) == [
+        ("trigger changed", "service `arm/shut`, was `arm/close`")
+    ]
+
+
+def test_that_a_file_is_run_is_no_condition() -> None:
+    program = RUN.replace("BODY", AT_TEN)
+    guarded = program.replace("\nmain()\n", "\nif __name__ == '__main__':\n    main()\n")
+    assert guarded != program
+    assert compare({"run.py": guarded}, {"run.py": program}) == []
+    asked = program.replace("\nmain()\n", "\nif len(sys.argv) == 2:\n    main()\n")
+    assert compare({"run.py": program}, {"run.py": asked}) == [("tightened", "only when `len(sys.argv) == 2` too")]
+
+
+def test_what_nothing_assigns_publishes_nothing() -> None:
+    sends = "        self.speak_pub.publish(msg)"
+    assert compare_python("        pass", sends) == []
+    made = f"        self.speak_pub = make(msg)\n{sends}"
+    assert [kind for kind, _ in compare_python("        pass", made)] == ["new"]
+    other = "\n\nclass Other:\n    def __init__(self):\n        self.speak_pub = rospy.Publisher('more', String)\n"
+    assert compare_python(f"        pass{other}", f"{sends}{other}") == []
+    derived = PYTHON.replace("class Talker:", "class Voice:\n    pass\n\nclass Talker(Voice):")
+    silent, sending = (derived.replace("BODY", body) for body in ("        pass", sends))
+    assert compare({"talker.py": silent}, {"talker.py": sending}) == []
+    unseen = [text.replace("(Voice)", "(other.Voice)") for text in (silent, sending)]
+    assert [kind for kind, _ in compare({"talker.py": unseen[0]}, {"talker.py": unseen[1]})] == ["new"]
+    given = "\n\ndef give(one):\n    one.speak_pub = make(one)\n"
+    assert [kind for kind, _ in compare_python(f"        pass{given}", f"{sends}{given}")] == ["new"]

@@ -62,6 +62,12 @@ def on(version, distro="humble"):
         ([DefinedMacro("FOXY", "", "", (OLD, HUMBLE))], IFDEF, on("2.4.0", "foxy"), False),
         ([DefinedMacro("FOXY", "1", "", (OLD,))], Condition("cpp", "FOXY"), on("2.4.0"), True),
         ([DefinedMacro("FOXY", "0", "", (OLD,))], Condition("cpp", "FOXY"), on("2.4.0"), None),
+        # What it is defined as is not known, or is the name of no macro.
+        ([DefinedMacro("FOXY", "$<BOOL:${OLD}>", "", ())], Condition("cpp", "FOXY"), on("2.4.0"), None),
+        ([DefinedMacro("FOXY", "${OLD}", "", ())], Condition("cpp", "FOXY"), on("2.4.0"), None),
+        ([DefinedMacro("FOXY", "ON", "", ())], Condition("cpp", "FOXY"), on("2.4.0"), None),
+        ([DefinedMacro("FOXY", "$<BOOL:${OLD}>", "", (OLD,))], IFDEF, on("2.4.0"), True),
+        ([DefinedMacro("FOXY", "", "", ())], Condition("cpp", "FOXY"), on("2.4.0"), True),
         ([DefinedMacro("FOXY", "", "", ())], IFDEF, on(None), True),
         # Of what nothing defines nothing is known: another package's header or the user may.
         ([DefinedMacro("OTHER", "", "", ())], IFDEF, on("2.4.0"), None),

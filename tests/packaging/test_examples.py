@@ -17,7 +17,7 @@ BREAKS = {
         error   library-version    src/porter_vision/CMakeLists.txt  OpenCV  laptop,ci
         error   changed-signature  src/porter_vision/include/porter_vision/marker_detector.hpp  cv::aruco::ArucoDetector  laptop,ci
         error   changed-signature  src/porter_vision/src/marker_node.cpp  message_filters::Subscriber::subscribe  ci
-        warning undeclared-package src/porter_bringup/launch/porter.launch.py  v4l2_camera  laptop,robot,ci
+        error   undeclared-package src/porter_bringup/launch/porter.launch.py  v4l2_camera  laptop,robot,ci
         """,
     "ros1_ws": """
         error   removed-symbol     src/gantry_vision/src/grader.cpp  CV_LOAD_IMAGE_GRAYSCALE  laptop

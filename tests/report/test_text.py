@@ -51,6 +51,15 @@ def test_team(team):
     assert text.render(team) == TEAM
 
 
+def test_further_packages_of_a_cause_are_named(team):
+    more = [each._replace(also=tuple("abcdef")) for each in team.findings]
+    told = text.render(team._replace(findings=more))
+    assert told.count("  and in 6 other packages: a, b, c, d, e, ...\n") == 3
+    wrong = next(each for each in more if each.severity == "error")
+    one = text.render(team._replace(findings=[wrong._replace(also=("dock",))]))
+    assert "  and in 1 other package: dock\n" in one
+
+
 def test_ascii_where_the_stream_is_ascii(team):
     style = choose_style(io.TextIOWrapper(io.BytesIO(), encoding="ascii"))
     assert text.render(team, style).isascii()

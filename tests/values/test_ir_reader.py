@@ -223,3 +223,52 @@ end:
         (Reaction.IGNORED, None, NOWHERE),
         (Reaction.CRASH, CrashKind.ENDLESS, CodeLine("/ws/src/node.cpp", 12)),
     }
+
+
+@pytest.mark.parametrize("step, result", [(1, Reaction.IGNORED), (0, Reaction.CRASH)])
+def test_a_block_that_is_jumped_back_to_within_a_counting_loop(step, result):
+    # The latch stands before the inner loop and has no phi of its own; the counter is the outer block's.
+    text = f"""
+define void @entry() !dbg !3 {{
+  br label %outer, !dbg !5
+outer:
+  %i = phi i64 [ 0, %0 ], [ %next, %latch ]
+  br label %inner, !dbg !5
+latch:
+  %next = add i64 %i, {step}, !dbg !5
+  %over = icmp eq i64 %next, 12
+  br i1 %over, label %end, label %outer, !dbg !5
+inner:
+  %bit = phi i64 [ 0, %outer ], [ %more, %inner ]
+  %more = add i64 %bit, 1
+  %last = icmp eq i64 %more, 7
+  br i1 %last, label %latch, label %inner, !dbg !5
+end:
+  ret void, !dbg !5
+}}
+!1 = !DIFile(filename: "node.cpp", directory: "/ws/src")
+!3 = distinct !DISubprogram(name: "entry", file: !1, line: 1)
+!5 = !DILocation(line: 12, column: 1, scope: !3)
+"""
+    (path,) = explore([text], "entry", Bounds(seconds=60), lambda path: path.startswith("/ws/")).paths
+    assert (path.result, path.crash) == (result, CrashKind.ENDLESS if step == 0 else None)
+
+
+@pytest.mark.parametrize("asked, exceeded", [("ugt i64 %size, 9", 1), ("ugt i64 %size, 3", 0), ("ugt i64 %size, 2", 0)])
+def test_a_size_that_only_a_larger_array_has(asked, exceeded):
+    text = f"""
+declare i64 @ri_size(ptr, i64)
+@name = constant [2 x i8] c"x\\00"
+define void @entry() {{
+  %size = call i64 @ri_size(ptr @name, i64 3)
+  %more = icmp {asked}
+  br i1 %more, label %yes, label %no
+yes:
+  ret void
+no:
+  ret void
+}}
+"""
+    found = explore([text], "entry", Bounds(seconds=60), lambda path: True)
+    assert len(found.exceeded) == exceeded
+    assert len(found.paths) == (2 if asked.endswith(" 2") else 1)

@@ -7,6 +7,7 @@ from collections import Counter
 import pytest
 import z3
 from rosimpact.impact.facts.interface import extract
+from rosimpact.impact.values.evaluate import evaluate
 from rosimpact.impact.values.harness.replay import is_confirmed
 from rosimpact.impact.values.outcomes import Bounds, CrashKind, Reaction, Witness
 from rosimpact.impact.values.python.explore import CallbackCode, explore_callback
@@ -22,12 +23,17 @@ MESSAGES = {
     "std_msgs/Float64": "float64 data\n",
     "std_msgs/Header": "uint32 seq\ntime stamp\nstring frame_id\n",
     "geometry_msgs/Vector3": "float64 x\nfloat64 y\nfloat64 z\n",
+    "geometry_msgs/Quaternion": "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n",
+    "lamp_srvs/SwitchRequest": "uint8 level\n",
+    "lamp_srvs/SwitchResponse": "bool success\nfloat64 share\n",
+    "lamp_msgs/Stamped": "builtin_interfaces/Time stamp\n",
     "geometry_msgs/Twist": "Vector3 linear\nVector3 angular\n",
     "geometry_msgs/PointStamped": "std_msgs/Header header\nVector3 point\n",
     "sensor_msgs/LaserScan": "float32 range_min\nfloat32 range_max\nfloat32[] ranges\n",
     "sensor_msgs/JointState": "string[] name\nfloat64[] position\n",
     "lamp_msgs/Lamp": "uint8 OFF=0\nuint8 GREEN=1\nuint8 RED=3\nuint8 value\nint32[3] parts\n",
 }
+ONE_NUMBER = (("msg", "std_msgs/Int32"),)
 HEAD = """
 import math
 import rospy
@@ -83,14 +89,13 @@ def explore(body, message, tmp_path, bounds=None):
     )
 
 
-def explore_text(text, name, message, tmp_path, bounds=None):
+def explore_text(text, name, message, tmp_path, bounds=None, joined=(), place_of_message=0, ros=1, kind="subscriber"):
     (tmp_path / "driver.py").write_text(text)
     sections = {name: extract(found.encode(), "msg").sections[0] for name, found in MESSAGES.items()}
-    messages = Messages(sections.get, 1)
+    messages = Messages(sections.get, ros)
     module = ModuleCode("driver", "driver.py", ast.parse(text))
-    found = explore_callback(
-        CallbackCode(module, name, 0, message), messages, lambda name: None, bounds or Bounds(text=5)
-    )
+    code = CallbackCode(module, name, 0, message, joined, place_of_message, kind, ros == 2)
+    found = explore_callback(code, messages, lambda name: None, bounds or Bounds(text=5))
     kinds = {name: (one.kind, one.bits, one.is_signed) for name, one in found.inputs.items()}
     seen = {}
     for path in found.paths:
@@ -103,7 +108,8 @@ def explore_text(text, name, message, tmp_path, bounds=None):
         model = solver.model()
         values = {name: model.eval(one.term, True).as_long() for name, one in found.inputs.items()}
         witness = Witness(values, path.result, path.crash, path.place)
-        place = ReplayPlace(tmp_path, (tmp_path,), "driver", name, message, tmp_path / "driver.py")
+        given = tuple(code.list_messages())
+        place = ReplayPlace(tmp_path, (tmp_path,), "driver", name, given, tmp_path / "driver.py", kind == "service")
         replayed = replay_witness(place, witness, kinds, messages, tmp_path)
         seen[key] = is_confirmed(witness, replayed) or replayed
     return found, seen
@@ -395,7 +401,7 @@ def test_an_endless_loop_is_stopped_in_the_replay(tmp_path, monkeypatch):
     monkeypatch.setattr("rosimpact.impact.values.python.replay._SECONDS", 2.0)
     (tmp_path / "driver.py").write_text(HEAD + "    def callback(self, msg):\n        while True:\n            pass\n")
     messages = Messages({"std_msgs/Int32": extract(b"int32 data\n", "msg").sections[0]}.get, 1)
-    place = ReplayPlace(tmp_path, (tmp_path,), "driver", "Driver.callback", "std_msgs/Int32", tmp_path / "driver.py")
+    place = ReplayPlace(tmp_path, (tmp_path,), "driver", "Driver.callback", ONE_NUMBER, tmp_path / "driver.py")
     witness = Witness({"msg.data": 1}, Reaction.CRASH, CrashKind.ENDLESS, replayed_place := ("", 0))
     seen = replay_witness(place, witness, {}, messages, tmp_path)
     assert (seen.result, seen.crash) == (Reaction.CRASH, CrashKind.ENDLESS) and replayed_place == ("", 0)
@@ -404,7 +410,7 @@ def test_an_endless_loop_is_stopped_in_the_replay(tmp_path, monkeypatch):
 def test_a_module_that_cannot_be_loaded_is_said(tmp_path):
     (tmp_path / "driver.py").write_text("import os\nraise RuntimeError('no robot')\n")
     messages = Messages({"std_msgs/Int32": extract(b"int32 data\n", "msg").sections[0]}.get, 1)
-    place = ReplayPlace(tmp_path, (tmp_path,), "driver", "Driver.callback", "std_msgs/Int32", tmp_path / "driver.py")
+    place = ReplayPlace(tmp_path, (tmp_path,), "driver", "Driver.callback", ONE_NUMBER, tmp_path / "driver.py")
     seen = replay_witness(place, Witness({}, Reaction.HANDLED, None, ("", 0)), {}, messages, tmp_path)
     assert seen.reason == "RuntimeError: no robot" and seen.place == ("driver.py", 2)
     assert not is_confirmed(Witness({}, Reaction.HANDLED, None, ("", 0)), seen)
@@ -521,3 +527,169 @@ def test_an_exception_of_python_that_is_made_and_raised(tmp_path):
     found, seen = explore(body, "std_msgs/UInt8", tmp_path)
     assert solve(found, Reaction.LOG_ONLY, "msg.data") == {1} and solve(found, Reaction.CRASH, "msg.data") == {2}
     assert set(seen.values()) == {True}, seen
+
+
+JOINED = """
+import rospy
+from std_msgs.msg import Int32
+pub = rospy.Publisher("out", Int32, queue_size=1)
+
+
+def callback(scan, level, *more):
+    if scan.range_max > 1.0:
+        pub.publish(Int32(level.data // (len(more) + scan.range_min)))
+"""
+
+
+@pytest.mark.parametrize("place, own, other", [(0, "msg.range_max", "msg2.data"), (1, "msg1.range_max", "msg.data")])
+def test_all_messages_of_a_synchronizer_are_given(tmp_path, place, own, other):
+    joined = ("sensor_msgs/LaserScan", "std_msgs/Int32")
+    found, seen = explore_text(JOINED, "callback", joined[place], tmp_path, joined=joined, place_of_message=place)
+    assert own in found.inputs and other in found.inputs
+    assert seen[Reaction.CRASH, CrashKind.DIVISION] is True and seen[Reaction.HANDLED, None] is True
+    assert set(seen.values()) == {True}
+
+
+def test_further_arguments_of_a_callback_are_given_in_a_replay(tmp_path):
+    text = HEAD + "    def callback(self, msg, what, more=3):\n        self.pub.publish(Int32(msg.data))\n"
+    _, seen = explore_text(text, "Driver.callback", "std_msgs/Int32", tmp_path)
+    assert seen == {(Reaction.HANDLED, None): True}
+
+
+TURNED = """
+import rospy
+from std_msgs.msg import Float64
+from geometry_msgs.msg import Quaternion
+from tf.transformations import euler_from_quaternion, quaternion_from_euler, quaternion_matrix
+pub = rospy.Publisher("yaw", Float64, queue_size=1)
+
+
+def by_numbers(msg):
+    roll, pitch, yaw = euler_from_quaternion([msg.x, msg.y, msg.z, msg.w])
+    x, y, z, w = quaternion_from_euler(0, 0, yaw)
+    rotation = quaternion_matrix([x, y, z, w])
+    pub.publish(Float64(rotation[3][3]))
+
+
+def by_message(msg):
+    pub.publish(Float64(euler_from_quaternion(msg)[2]))
+
+
+def beyond_half_a_turn(msg):
+    if euler_from_quaternion([msg.x, msg.y, msg.z, msg.w])[2] > 3.2:
+        pub.publish(Float64(1.0))
+"""
+
+
+@pytest.mark.parametrize(
+    "name, expected",
+    [
+        ("by_numbers", {(Reaction.HANDLED, None): True}),
+        ("by_message", {(Reaction.CRASH, CrashKind.EXCEPTION): True}),
+        ("beyond_half_a_turn", {(Reaction.IGNORED, None): True}),
+    ],
+)
+def test_rotations(tmp_path, name, expected):
+    _, seen = explore_text(TURNED, name, "geometry_msgs/Quaternion", tmp_path)
+    assert seen == expected
+
+
+MOMENTS = """
+from rclpy.node import Node
+from rclpy.time import Time
+from rclpy.duration import Duration
+
+
+class Driver(Node):
+    def __init__(self):
+        super().__init__("driver")
+
+    def of_time(self, msg):
+        moment = Time.from_msg(msg.stamp)
+        self.get_logger().info(f"{(self.get_clock().now() - moment).nanoseconds}")
+
+    def of_duration(self, msg):
+        self.get_logger().info(f"{Duration.from_msg(msg.stamp).nanoseconds}")
+"""
+
+
+@pytest.mark.parametrize(
+    "name, expected",
+    [
+        ("of_time", {(Reaction.CRASH, CrashKind.EXCEPTION): True, (Reaction.LOG_ONLY, None): True}),
+        ("of_duration", {(Reaction.LOG_ONLY, None): True}),
+    ],
+)
+def test_moments_of_messages(tmp_path, name, expected):
+    _, seen = explore_text(MOMENTS, f"Driver.{name}", "lamp_msgs/Stamped", tmp_path, ros=2)
+    assert seen == expected
+
+
+ROSPY_SERVICE = """
+import rospy
+from std_msgs.msg import Int32
+from lamp_srvs.srv import Switch, SwitchResponse
+
+
+class Driver(object):
+    def __init__(self):
+        self.pub = rospy.Publisher("out", Int32, queue_size=1)
+        rospy.Service("switch", Switch, self.on_switch)
+
+    def on_switch(self, request):
+        if request.level > 200:
+            return None
+        if request.level > 100:
+            self.pub.publish(Int32(request.level))
+        return SwitchResponse(success=True, share=1 / request.level)
+"""
+RCLPY_SERVICE = """
+from rclpy.node import Node
+from lamp_srvs.srv import Switch
+
+
+class Driver(Node):
+    def __init__(self):
+        super().__init__("driver")
+        self.create_service(Switch, "switch", self.on_switch)
+
+    def on_switch(self, request, response):
+        response.share = 1 / request.level
+        other = Switch.Response(success=request.level > 7)
+        response.success = other.success
+        return response
+"""
+
+
+@pytest.mark.parametrize(
+    "text, ros, others, sent",
+    [(ROSPY_SERVICE, 1, {(Reaction.IGNORED, None)}, {"pub"}), (RCLPY_SERVICE, 2, set(), set())],
+)
+def test_services(tmp_path, text, ros, others, sent):
+    found, seen = explore_text(text, "Driver.on_switch", "lamp_srvs/Switch", tmp_path, ros=ros, kind="service")
+    assert set(seen) == {(Reaction.HANDLED, None), (Reaction.CRASH, CrashKind.DIVISION)} | others
+    assert set(seen.values()) == {True}
+    assert solve(found, Reaction.CRASH, "request.level") == {0}
+    assert {one.publisher for path in found.paths for one in path.sent} == sent
+    replies = [path for path in found.paths if ("reply", "response") in {(one.kind, one.name) for one in path.effects}]
+    assert replies and all(path.result is Reaction.HANDLED for path in replies)
+
+
+@pytest.mark.parametrize(
+    "lines, beyond",
+    [
+        ("if len(msg.ranges) > 10: self.pub.publish(Int32(1))", ("ranges",)),
+        ("self.pub.publish(Int32(len(msg.ranges[9:])))", ()),
+        ("self.last = msg.ranges[5]", ("ranges",)),
+        ("self.last = msg.ranges[3]", ("ranges",)),
+        ("self.last = msg.ranges[1]", ()),
+        ("for one in msg.ranges: self.pub.publish(Int32(1))", ()),
+    ],
+)
+def test_larger_arrays_than_were_looked_at(tmp_path, lines, beyond):
+    text = HEAD + f"    def callback(self, msg):\n        {lines}\n"
+    found, _ = explore_text(text, "Driver.callback", "sensor_msgs/LaserScan", tmp_path)
+    assert found.bounds.array == 3
+    said = evaluate(found, {})
+    assert said.beyond == beyond
+    assert not beyond or all(one.ignored is None and one.unhandled is None for one in said.fields)

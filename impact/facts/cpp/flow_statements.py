@@ -61,6 +61,12 @@ def negate_conditions(conditions: tuple[FlowCondition, ...]) -> str | None:
     return " || ".join(add_parentheses(piece) for piece in pieces) if len(pieces) > 1 else pieces[0]
 
 
+def _is_thrown_again(body: Node | None) -> bool:
+    """Whether at the end of a handler what it caught is thrown again, as it would be without the handler."""
+    inside = [child for child in body.children if child.is_named] if body is not None else []
+    return bool(inside) and inside[-1].kind_id == KIND.throw_statement and inside[-1].child_count == 2
+
+
 def add_parentheses(text: str) -> str:
     """A condition that may stand beside `&&`."""
     depth = 0
@@ -411,7 +417,8 @@ class CppStatements(Declarations):
                 body = next((part for part in child.children if part.kind_id == KIND.compound_statement), None)
                 inner = self.guard("catch", text, line, guard)
                 left = self.visit_statement(body, inner) if body is not None else STAYS
-                caught.append((FlowCondition("catch", text, line), left))
+                if not _is_thrown_again(body):
+                    caught.append((FlowCondition("catch", text, line), left))
             elif number == KIND.compound_statement:
                 leaving = self.visit_statement(child, guard)
             elif number == KIND.field_initializer_list:
@@ -423,7 +430,7 @@ class CppStatements(Declarations):
             return (going_on[0],) if len(going_on) == 1 else STAYS
         conditions = leaving if isinstance(leaving, tuple) else ()
         conditions += tuple(
-            FlowCondition("unless", f"catch ({asked.text})", asked.line)
+            FlowCondition("unless", f"catch ({asked.text})", self.find_line(node))
             for asked, left in caught
             if left in (JUMPS, BREAKS)
         )

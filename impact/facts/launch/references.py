@@ -8,9 +8,11 @@ import msgspec
 from msgspec import structs
 
 from ..condition import UNDECIDED, Condition
+from ..distro_branches import VARIABLE, BranchedName, ComparedDistro
 from ..markup import TOKEN, Attribute, Document, Element, decode, find_xml_problems, scan
 from ..place import Problem, Reference
 from ..words import list_words
+from .distro_tests import list_branched, list_compared, read_machine_test
 from .documents import find_generation, read_document
 
 
@@ -49,6 +51,7 @@ class ReferenceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     joints: of robot descriptions. trees: behaviour trees that a file of BehaviorTree.CPP defines, which others include
     by their name; modelled: nodes of which it lists the ports for editors.
     generation: of a launch file, as LaunchFile has it; of a script, the one whose commands alone it calls, else 0.
+    branched, compared: of launch files, see distro_tests.py.
     """
 
     references: tuple[Reference, ...]
@@ -60,6 +63,8 @@ class ReferenceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     trees: tuple[str, ...] = ()
     modelled: tuple[str, ...] = ()
     joints: tuple[ControlledJoint, ...] = ()
+    branched: tuple[BranchedName, ...] = ()
+    compared: tuple[ComparedDistro, ...] = ()
 
 
 PACKAGE = re.compile(r"[A-Za-z][A-Za-z0-9_-]*\Z")
@@ -91,12 +96,13 @@ class _Found:
         self.arguments: tuple[str, ...] | None = None
         # Under which it stands, as Reference has them.
         self.conditions: tuple[Condition, ...] = ()
+        self.macro = ""
 
     def add(self, kind: str, package: str, name: str, offset: int, conditional: bool) -> None:
         line, column = self.locate(offset)
         arguments = self.arguments if kind == "file" else None
         self.references.append(
-            Reference(kind, package, name, line, column, conditional, arguments, self.conditions)
+            Reference(kind, package, name, line, column, conditional, arguments, self.conditions, self.macro)
         )
 
     def stand_under(self, conditions: tuple[Condition, ...]) -> bool:
@@ -211,20 +217,24 @@ def _find_root(data: bytes) -> str:
 _ARGUMENT = re.compile(r"\s*\$\((?:arg|var)\s+([\w.-]+)\s*\)\s*\Z")
 
 
-def _find_conditions(document: Document) -> list[tuple[Condition, ...]]:
-    """For each element, the if and unless of it and those around it that keep it from running when the file is started
-    without arguments, or that cannot be known."""
-    defaults: dict[str, set[str]] = {}
+def _find_presets(document: Document) -> dict[str, str]:
+    """What the arguments of a file are when it is started without any, as far as one element alone says so."""
+    found: dict[str, set[str]] = {}
     for element in document.elements:
-        if element.name == "arg" and (preset := element.find("default", "value")) is not None:
+        if element.name in ("arg", "let") and (preset := element.find("default", "value")) is not None:
             plain = element.parent < 0 or document.elements[element.parent].name == "launch"
             if plain and not any(a.name in ("if", "unless") for a in element.attributes):
-                defaults.setdefault(element.get("name"), set()).add(preset.value)
+                found.setdefault(element.get("name"), set()).add(preset.value)
+    return {name: values.pop() for name, values in found.items() if len(values) == 1}
+
+
+def _find_conditions(document: Document, presets: dict[str, str]) -> list[tuple[Condition, ...]]:
+    """For each element, the if and unless of it and those around it that keep it from running when the file is started
+    without arguments, or that cannot be known."""
 
     def resolve_text(text: str) -> str:
         argument = _ARGUMENT.match(text)
-        values = defaults.get(argument.group(1), set()) if argument is not None else {text}
-        return next(iter(values)).strip().lower() if len(values) == 1 else ""
+        return (presets.get(argument.group(1), "") if argument is not None else text).strip().lower()
 
     found: list[tuple[Condition, ...]] = []
     for element in document.elements:
@@ -236,27 +246,10 @@ def _find_conditions(document: Document) -> list[tuple[Condition, ...]]:
             for attribute in element.attributes:
                 passed = {"if": ("true", "1"), "unless": ("false", "0")}.get(attribute.name)
                 if passed is not None and resolve_text(attribute.value) not in passed:
-                    conditions = (*conditions, _read_test_of_machine(attribute))
+                    test = read_machine_test(attribute.value, attribute.name == "unless", presets)
+                    conditions = (*conditions, test)
         found.append(conditions)
     return found
-
-
-_EVAL = re.compile(r"\s*\$\(\s*eval\s+(.*)\)\s*\Z", re.DOTALL)
-_QUOTED_WHOLE = re.compile(r"""(['"])((?:(?!\1)[^\\]|\\.)*)\1\Z""", re.DOTALL)
-_VARIABLE = re.compile(r"""(['"])\$\((?:opt)?env\s+(ROS_\w+)[^()]*\)\1|\b(?:opt)?env\(\s*['"](ROS_\w+)['"]""")
-_OTHER = re.compile(r"""(['"]?)\$\([^()]*\)\1""")
-
-
-def _read_test_of_machine(attribute: Attribute) -> Condition:
-    """An if or unless that asks for a variable of the environment that ROS sets, as a test of Python; UNDECIDED for any
-    other."""
-    test = _EVAL.match(attribute.value)
-    if test is None or "ROS_" not in test[1]:
-        return UNDECIDED
-    whole = _QUOTED_WHOLE.match(test[1].strip())
-    text = re.sub(r"\\(['\"])", r"\1", whole[2] if whole is not None else test[1])
-    text = _VARIABLE.sub(lambda m: f"os.environ['{m[2]}']" if m[2] else f"os.environ.get('{m[3]}'", text)
-    return Condition("python", _OTHER.sub("undecided", text).strip(), attribute.name == "unless")
 
 
 def _add_all_mentions(found: _Found, element: Element, conditional: bool) -> None:
@@ -274,7 +267,9 @@ def _read_launch(data: bytes, kind: str = "launch_xml") -> ReferenceFile:
     if kind == "launch_yaml" and not document.elements:  # arguments or parameters, called like a launch file
         return structs.replace(_read_yaml(data), problems=document.problems)
     found = _Found(document.locate)
-    for element, conditions in zip(document.elements, _find_conditions(document), strict=True):
+    presets = _find_presets(document)
+    under = _find_conditions(document, presets)
+    for element, conditions in zip(document.elements, under, strict=True):
         name, conditional = element.name, found.stand_under(conditions)
         found.arguments = _list_include_arguments(element) if name == "include" else None
         if name in NODES:
@@ -297,7 +292,11 @@ def _read_launch(data: bytes, kind: str = "launch_xml") -> ReferenceFile:
         if name == "rosparam" and element.text and "plugin" in element.text:
             _add_plugin_values(found, element.text, element.text_offset, conditional)
     generation = find_generation(document) if kind == "launch_xml" else 0
-    return structs.replace(found.make_file(*document.problems), generation=generation)
+    made = structs.replace(found.make_file(*document.problems), generation=generation)
+    if VARIABLE not in document.text:
+        return made
+    branched = tuple(list_branched(document, under, (*NODES, "include", "executable", "load_composable_node")))
+    return structs.replace(made, branched=branched, compared=tuple(list_compared(document, presets)))
 
 
 def _list_include_arguments(include: Element) -> tuple[str, ...] | None:
@@ -351,9 +350,12 @@ def _add_command(found: _Found, attribute: Attribute | None, conditional: bool) 
 def _read_robot_description(data: bytes) -> ReferenceFile:
     document = scan(data)
     found = _Found(document.locate)
-    for element, conditions in zip(document.elements, _find_conditions(document), strict=True):
+    macros = _list_macros(document)
+    for element, conditions, found.macro in zip(document.elements, _find_conditions(document, {}), macros, strict=True):
         conditional = found.stand_under(conditions)
-        if element.name == "plugin":
+        if element.name.startswith("xacro:") and element.name not in _OF_XACRO:
+            found.add("macro", "", element.name.removeprefix("xacro:"), element.offset, conditional)
+        elif element.name == "plugin":
             library = element.find("filename")
             if library is not None and library.value and not any(c in library.value for c in "$/{"):
                 found.add("plugin", "", library.value, library.offset, conditional)
@@ -367,6 +369,23 @@ def _read_robot_description(data: bytes) -> ReferenceFile:
     # xacro reads with Python's strict parser, URDF and SDF are read with TinyXML
     problems = document.problems if "xacro" in document.text else _drop_tolerated(data, document.problems)
     return structs.replace(found.make_file(*problems), joints=tuple(_list_controlled_joints(document)))
+
+
+# Elements of xacro itself; any other calls the macro of its name. Source: xacro/__init__.py, eval_all().
+_OF_XACRO = frozenset(
+    f"xacro:{name}"
+    for name in ("arg", "attribute", "call", "element", "if", "include", "insert_block", "macro", "property", "unless")
+)
+
+
+def _list_macros(document: Document) -> list[str]:
+    """For each element, the innermost macro that it stands in; empty outside of all."""
+    found: list[str] = []
+    for element in document.elements:
+        around = document.elements[element.parent] if element.parent >= 0 else None
+        outer = found[element.parent] if element.parent >= 0 else ""
+        found.append(around.get("name") if around is not None and around.name == "xacro:macro" else outer)
+    return found
 
 
 _INTERFACES = {"command_interface": "commands", "state_interface": "states"}

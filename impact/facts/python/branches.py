@@ -1,5 +1,5 @@
-"""What a Python file does for each distro: names that it binds in branches on ROS_DISTRO alone, and files that it names
-by it."""
+"""What a Python file does for each distro: names that it binds and what it starts in branches on ROS_DISTRO alone,
+tables that it asks by it, names that it compares it with, and files that it names by it."""
 
 from __future__ import annotations
 
@@ -7,35 +7,13 @@ import ast
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-import msgspec
-
 from ..condition import Condition
+from ..distro_branches import VARIABLE, Branch, BranchedName, ComparedDistro
 from ..place import Reference
 from .text import format_dotted
 
 DISTRO = "{distro}"
 """Stands in the name of a file for that of the distro."""
-
-
-class Branch(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A way through an `if` after which a name is bound, or that does not come out of it. conditions: under which it is
-    taken."""
-
-    conditions: tuple[Condition, ...]
-
-
-class BranchedName(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A name that is bound in branches of one `if` alone, which ask for the distro. line, column: where it is used
-    after them, whichever was taken. function: the function that they are in; empty outside of all."""
-
-    name: str
-    line: int
-    column: int
-    branches: tuple[Branch, ...]
-    function: str = ""
-
-
-_VARIABLE = "ROS_DISTRO"
 _LEAVING = frozenset(("exit", "quit", "_exit", "abort", "fail"))
 _MOST_WAYS = 40
 _DEEPEST = 40
@@ -49,16 +27,19 @@ class _Way(NamedTuple):
 
 def list_branched_names(tree: ast.Module) -> Iterator[BranchedName]:
     """The names of a module and of its functions that are bound in branches on the distro alone, with the first use of
-    each behind them."""
+    each behind them; else where each branch of such an `if` starts something, and no `else` follows; and tables that
+    are asked by the distro."""
     for scope in (tree, *(node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef))):
         machine = _find_machine_names(tree, scope)
         function = scope.name if isinstance(scope, ast.FunctionDef) else ""
+        yield from _list_asked_tables(tree, scope, machine, function)
         for place, statement in enumerate(scope.body):
             if not isinstance(statement, ast.If):
                 continue
             ways = list(_list_ways(statement, machine)) if _count_ways(statement) <= _MOST_WAYS else []
-            if not any(_VARIABLE in one.text for way in ways for one in way.conditions):
+            if not any(VARIABLE in one.text for way in ways for one in way.conditions):
                 continue
+            starts = _list_starting(ways)
             inside = {name for way in ways for name in _list_bound(way.body)}
             outside = _find_bound_outside(scope, statement)
             for name in sorted(inside - outside):
@@ -67,6 +48,106 @@ def list_branched_names(tree: ast.Module) -> Iterator[BranchedName]:
                 if used is not None and len(safe) < len(ways):
                     branches = tuple(Branch(way.conditions) for way in safe)
                     yield BranchedName(name, used.lineno, used.col_offset + 1, branches, function)
+                    starts = []
+            if starts:
+                branches = tuple(Branch(way.conditions) for way in starts)
+                yield BranchedName(VARIABLE, statement.lineno, statement.col_offset + 1, branches, function, "start")
+
+
+# Actions of launch that start something.
+_STARTING = frozenset((
+    "ComposableNode", "ComposableNodeContainer", "ExecuteProcess", "IncludeLaunchDescription", "LifecycleNode", "Node",
+))  # fmt: skip
+
+
+def _list_starting(ways: Sequence[_Way]) -> list[_Way]:
+    """The ways of a chain of at least two tests of the distro, each of which starts something; none where one does not,
+    or where something is done in all other cases."""
+    *tested, last = ways or [_Way((), ())]
+    if len(tested) < 2 or last.body or not all(VARIABLE in way.conditions[-1].text for way in tested):
+        return []
+    calls = ({format_dotted(node.func).rpartition(".")[2] for one in way.body for node in ast.walk(one)
+              if isinstance(node, ast.Call)} for way in tested)  # fmt: skip
+    return tested if not any(_STARTING.isdisjoint(names) for names in calls) else []
+
+
+def _list_asked_tables(
+    tree: ast.Module, scope: ast.Module | ast.FunctionDef, machine: dict[str, ast.expr], function: str
+) -> Iterator[BranchedName]:
+    """The tables that a module or function asks by the distro wherever it comes by."""
+    bound: dict[str, list[ast.expr]] = {}
+    for statement in (*tree.body, *(scope.body if scope is not tree else ())):
+        if isinstance(statement, ast.Assign):
+            for target in statement.targets:
+                if isinstance(target, ast.Name):
+                    bound.setdefault(target.id, []).append(statement.value)
+    for node in _list_evaluated(scope.body):
+        if not isinstance(node, ast.Subscript) or not isinstance(node.ctx, ast.Load):
+            continue
+        if not is_distro_read(node.slice) and not (isinstance(node.slice, ast.Name) and node.slice.id in machine):
+            continue
+        held = node.value
+        name = held.id if isinstance(held, ast.Name) else VARIABLE
+        values = bound.get(name, []) if isinstance(held, ast.Name) else [held]
+        table = values[0] if len(values) == 1 else None
+        if not isinstance(table, ast.Dict) or (name != VARIABLE and _is_changed(tree, name)):
+            continue
+        keys = [key.value for key in table.keys if isinstance(key, ast.Constant) and isinstance(key.value, str)]
+        if keys and len(keys) == len(table.keys):
+            tests = (Condition("python", f"os.environ['{VARIABLE}'] == {key!r}") for key in keys)
+            branches = tuple(Branch((test,)) for test in tests)
+            yield BranchedName(name, node.lineno, node.col_offset + 1, branches, function, "key")
+
+
+def _is_changed(tree: ast.Module, name: str) -> bool:
+    """Whether something may be added to a table, or a test asks what is in it."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Subscript) and isinstance(node.value, ast.Name) and node.value.id == name:
+            if not isinstance(node.ctx, ast.Load):
+                return True
+        elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == name:
+            return True
+        elif isinstance(node, ast.Compare | ast.Call | ast.AugAssign):
+            parts = (*node.comparators, node.left) if isinstance(node, ast.Compare) else ast.iter_child_nodes(node)
+            if any(isinstance(part, ast.Name) and part.id == name for part in parts):
+                return True
+    return False
+
+
+def _list_evaluated(body: Iterable[ast.stmt]) -> Iterator[ast.AST]:
+    """What some statements evaluate in any case, up to one that may leave them."""
+    for statement in body:
+        if statement.__class__.__name__ in ("Try", "TryStar"):
+            return  # it may be made for that
+        if isinstance(statement, (ast.If, ast.For, ast.While, ast.With, ast.Match, *_SCOPES)):
+            if any(isinstance(node, ast.Return | ast.Raise) for node in ast.walk(statement)):
+                return
+            continue
+        waiting: list[ast.AST] = [statement]
+        while waiting:
+            node = waiting.pop(0)
+            yield node
+            # Only one side of these is evaluated, and what is in these when they are called.
+            if not isinstance(node, (ast.IfExp, ast.BoolOp, *_SCOPES)):
+                waiting.extend(ast.iter_child_nodes(node))
+        if isinstance(statement, ast.Return | ast.Raise):
+            return
+
+
+def list_compared_distros(tree: ast.Module) -> Iterator[ComparedDistro]:
+    """The texts that a module compares the distro with."""
+    machine = _find_machine_names(tree, tree)
+    for scope in ast.walk(tree):
+        if isinstance(scope, ast.FunctionDef):
+            machine.update(_find_machine_names(scope, scope))
+    for node in ast.walk(tree):
+        sides = (node.left, *node.comparators) if isinstance(node, ast.Compare) else ()
+        if not any(is_distro_read(side) or (isinstance(side, ast.Name) and side.id in machine) for side in sides):
+            continue
+        for side in sides:
+            for one in side.elts if isinstance(side, ast.Tuple | ast.List | ast.Set) else (side,):
+                if isinstance(one, ast.Constant) and isinstance(one.value, str):
+                    yield ComparedDistro(one.value, one.lineno, one.col_offset + 1)
 
 
 def _find_machine_names(tree: ast.Module | ast.FunctionDef, scope: ast.Module | ast.FunctionDef) -> dict[str, ast.expr]:
@@ -85,12 +166,12 @@ def is_distro_read(node: ast.expr) -> bool:
     if isinstance(node, ast.Subscript):
         key = node.slice
         asked = key.value if isinstance(key, ast.Constant) else None
-        return asked == _VARIABLE and format_dotted(node.value).endswith("environ")
+        return asked == VARIABLE and format_dotted(node.value).endswith("environ")
     if not isinstance(node, ast.Call) or not node.args or not isinstance(node.args[0], ast.Constant):
         return False
     function = format_dotted(node.func)
     known = function.endswith(("environ.get", "getenv", "EnvironmentVariable"))
-    return known and node.args[0].value == _VARIABLE
+    return known and node.args[0].value == VARIABLE
 
 
 class _Replacing(ast.NodeTransformer):
@@ -172,22 +253,8 @@ def _leaves(body: Sequence[ast.stmt]) -> bool:
 
 def _find_use(body: Sequence[ast.stmt], name: str) -> ast.Name | None:
     """The first use of a name that some statements come by in any case."""
-    for statement in body:
-        if statement.__class__.__name__ in ("Try", "TryStar"):
-            return None  # it may be made for that
-        if isinstance(statement, (ast.If, ast.For, ast.While, ast.With, ast.Match, *_SCOPES)):
-            continue
-        waiting: list[ast.AST] = [statement]
-        while waiting:
-            node = waiting.pop(0)
-            if isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Load):
-                return node
-            # Only one side of these is evaluated, and what is in these when they are called.
-            if not isinstance(node, (ast.IfExp, ast.BoolOp, *_SCOPES)):
-                waiting.extend(ast.iter_child_nodes(node))
-        if isinstance(statement, ast.Return | ast.Raise):
-            return None
-    return None
+    names = (node for node in _list_evaluated(body) if isinstance(node, ast.Name) and node.id == name)
+    return next((node for node in names if isinstance(node.ctx, ast.Load)), None)
 
 
 def list_distro_files(tree: ast.Module) -> Iterator[Reference]:

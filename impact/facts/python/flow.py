@@ -194,12 +194,14 @@ class PythonStatements(Expressions):
                 what = self.format_source(handler.type)
             if handler.name:
                 self.locals.add(handler.name)
-            caught.append((what, handler.lineno, self.walk_under("catch", what, handler.lineno, handler.body)))
+            left_so = self.walk_under("catch", what, handler.lineno, handler.body)
+            if not _is_raised_again(handler):
+                caught.append((what, handler.lineno, left_so))
         if node.orelse and left is not None:
             for condition in left:
                 self.push(condition.kind, condition.text, condition.line)
-            for what, line, _ in caught:
-                self.push("unless", f"except {what}", line)
+            for what, _, _ in caught:
+                self.push("unless", f"except {what}", node.lineno)
             more = self.walk_block(node.orelse)
             left = JUMPS if more is None else (*left, *more)
             self.guard = saved
@@ -212,7 +214,7 @@ class PythonStatements(Expressions):
                 return JUMPS
             return (HoldingCondition("catch", ", ".join(what for what, _ in going_on), going_on[0][1]), *last)
         jumping = tuple(
-            HoldingCondition("unless", f"except {what}", line) for what, line, leaving in caught if leaving is None
+            HoldingCondition("unless", f"except {what}", node.lineno) for what, _, leaving in caught if leaving is None
         )
         return (*jumping, *last) if going_on else (*left, *jumping, *last)
 
@@ -485,6 +487,12 @@ class PythonStatements(Expressions):
         self.enter(outer)
         self.guard, self.in_class, self.own = saved, in_class, own
         return STAYS
+
+
+def _is_raised_again(handler: ast.ExceptHandler) -> bool:
+    """Whether at the end of a handler what it caught is raised again, as it would be without the handler."""
+    last = handler.body[-1]
+    return isinstance(last, ast.Raise) and last.exc is None
 
 
 def can_break(statements: list[ast.stmt]) -> bool:

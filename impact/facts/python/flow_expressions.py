@@ -42,6 +42,12 @@ ANY = FlowExpr("other")
 _NUMBERS = {None: FlowExpr("number", "None"), True: FlowExpr("number", "True"), False: FlowExpr("number", "False")}
 
 
+def _is_reordered(node) -> bool:
+    """Whether what is walked through is in another order than it is written in."""
+    name = node.func.id if node.__class__ is ast.Call and node.func.__class__ is ast.Name else ""
+    return name in ("sorted", "reversed", "set")
+
+
 class Expressions(SourceText):
     """The reader of expressions, of which it visits some and makes values of others. It reads for one body at a time,
     into whose lists it writes."""
@@ -407,12 +413,18 @@ class Expressions(SourceText):
         """The head of a for: what is walked through and the variable that is each of it, under the loop's guard."""
         container = self.walk_elements(iterated)
         self.push("for", f"{self.format_source(target)} in {self.format_source(iterated)}", line)
-        value = container if container.kind == "list" and container.text == "each" else None
-        if value is not None and target.__class__ in (ast.Tuple, ast.List) and len(target.elts) == len(value.parts):
-            for part, each in zip(target.elts, value.parts, strict=False):
-                self.bind(part, FlowExpr("index", "", (each, ANY)) if each is not ANY else ANY, line)
+        self.bind_walked(target, container, line)
+
+    def bind_walked(self, target, container: FlowExpr, line: int) -> None:
+        """The variables of a loop, each of what is walked through; of what goes beside another, each its own."""
+        beside = container.kind == "list" and container.text == "each"
+        if beside and target.__class__ in (ast.Tuple, ast.List) and len(target.elts) == len(container.parts):
+            for part, each in zip(target.elts, container.parts, strict=False):
+                self.bind_walked(part, each, line)
+        elif container is ANY:
+            self.bind(target, ANY, line)
         else:
-            plain = FlowExpr("list", "", container.parts) if value is not None else container
+            plain = FlowExpr("list", "", container.parts) if beside else container
             self.bind(target, FlowExpr("index", "", (plain, ANY)), line)
 
     def walk_elements(self, node) -> FlowExpr:
@@ -425,11 +437,13 @@ class Expressions(SourceText):
                         self.visit(keyword.value)
                     return self.walk_elements(arguments[0])
                 if name == "enumerate":
-                    for argument in arguments[1:]:
-                        self.visit(argument)
-                    return FlowExpr("list", "each", (ANY, self.walk_elements(arguments[0])))
+                    begins = [*arguments[1:], *(one.value for one in node.keywords if one.arg == "start")]
+                    start = tuple(self.follow(one, "read") for one in begins[:1])
+                    count = ANY if _is_reordered(arguments[0]) else FlowExpr("call", "enumerate", start)
+                    return FlowExpr("list", "each", (count, self.walk_elements(arguments[0])))
                 if name in ("zip", "izip"):
-                    return FlowExpr("list", "each", tuple(self.walk_elements(argument) for argument in arguments))
+                    each = ((one, self.walk_elements(one)) for one in arguments)
+                    return FlowExpr("list", "each", tuple(ANY if _is_reordered(one) else held for one, held in each))
         return self.follow(node, "read")
 
     def bind(self, target, value: FlowExpr, line: int, type: str = "", operator: str = "=") -> None:

@@ -10,11 +10,12 @@ from typing import NamedTuple
 
 import msgspec
 
+from ..distro_branches import BranchedName, ComparedDistro
 from ..markup import find_text_encoding
 from ..place import Problem, Reference
 from ..words import list_words
 from . import python2
-from .branches import BranchedName, list_branched_names, list_distro_files
+from .branches import list_branched_names, list_compared_distros, list_distro_files
 from .reader import TRY, AttributeUse, Import, PythonReader
 from .text import drop_surrogates
 from .uses import FieldUse, PythonUse, TypedName
@@ -36,8 +37,8 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     list_words(). unbound: names that nothing in the file binds, and methods, with a dot before, that nothing in it
     defines and only Python 2 has; and what PythonReader.list_misused() lists. bound: names, between spaces, that others
     can import from it; empty where that cannot be known, and two spaces where there are none. typed: what of these
-    shows its type. unknown: members of objects whose types do not show, with the number of places. branched: see
-    branches.py, where the `distro file`s among the references are explained too.
+    shows its type. unknown: members of objects whose types do not show, with the number of places. branched,
+    compared: see distro_branches.py and branches.py, where the `distro file`s among the references are explained too.
     """
 
     imports: tuple[Import, ...]
@@ -55,6 +56,7 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     typed: tuple[TypedName, ...] = ()
     unknown: dict[str, int] = {}
     branched: tuple[BranchedName, ...] = ()
+    compared: tuple[ComparedDistro, ...] = ()
 
 
 class PythonSource(NamedTuple):
@@ -202,6 +204,7 @@ def extract(data: bytes) -> PythonFile:
                 typed=reader.list_typed_names(),
                 unknown=reader.unknown,
                 branched=tuple(list_branched_names(tree)) if asks and not old else (),
+                compared=tuple(list_compared_distros(tree)) if asks else (),
             )
         except RecursionError:
             problems = (*problems, Problem(1, "nested too deeply"))

@@ -270,7 +270,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     before_catkin_destinations: targets that are added before their folders are set. refused: names at which CMake
     stops. read_elsewhere: the CMake files that it asks for and that do not lie in the package. asked: the packages
     whose X_FOUND a test reads. stops: each message(FATAL_ERROR) under conditions, with its text. dependency_calls: the
-    calls of ament_target_dependencies()."""
+    calls of ament_target_dependencies(). compared: the words that tests compare ROS_DISTRO with."""
 
     project: str = ""
     minimum: tuple[str, At] | None = None
@@ -301,6 +301,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     asked: tuple[str, ...] = ()
     stops: tuple[Stop, ...] = ()
     dependency_calls: tuple[DependencyCall, ...] = ()
+    compared: tuple[tuple[str, At], ...] = ()
     catkin_destinations: bool = False
 
     @property

@@ -16,6 +16,7 @@ from msgspec import structs
 from ...conditions.cmake import asks_only_for_packages, list_tested_packages
 from ...facts.cmake import CMakeFile
 from ...facts.condition import Condition
+from ...facts.distro_branches import VARIABLE, list_compared_words
 from . import conditions as tests
 from .blocks import Block, CommandCall, build_blocks
 from .build import (
@@ -112,7 +113,7 @@ _ROS_ENVIRONMENT = re.compile(r"\bENV\{(ROS_(?:DISTRO|VERSION|PYTHON_VERSION))\}
 _COLLECTED = (
     *("macros", "found", "installs", "exports", "generated", "uses", "include_dirs", "links", "unresolved", "files"),
     *("message_files", "made", "from_found", "handed_on", "refused", "read_elsewhere", "asked", "stops"),
-    "dependency_calls",
+    *("dependency_calls", "compared"),
 )
 
 
@@ -193,6 +194,7 @@ class Interpreter:
         self.renamed: set[str] = set()  # what find_package(x NAMES ...) calls its variables after
         self.refused: dict[RefusedName, None] = {}
         self.asked: dict[str, None] = {}
+        self.compared: dict[tuple[str, At], None] = {}
         self.stops: list[tuple[At, str, tuple[Condition, ...]]] = []
         self.dependency_calls: dict[DependencyCall, None] = {}
         self.ament_package: At | None = None
@@ -559,6 +561,8 @@ class Interpreter:
         if value is not None:
             return value, ""
         self.use_environment(text, head.at)
+        if VARIABLE in text:
+            self.compared.update(((word, self.locate(head.at)), None) for word in list_compared_words(text))
         for held in self.conditions:
             if held.text == text and held.language == "cmake":
                 return not held.negated, text
@@ -1376,7 +1380,9 @@ def is_modelled(command: str, conditions: Iterable[Condition]) -> bool:
     return command in HANDLERS or command in WRAPPERS or is_for_tests(conditions)
 
 
-def calls_unmodelled(build: Build | Interpreter) -> bool:
+def calls_unmodelled(build: Build | Interpreter, for_tests: bool = False) -> bool:
     """Whether a package calls what may make anything, such as headers: a function of another package of which it is not
-    known what it does."""
-    return any(use.kind == "command" and not is_modelled(use.name, use.conditions) for use in build.uses)
+    known what it does. for_tests: what is called for tests alone counts too, as what tests use may come of it."""
+    return any(
+        use.kind == "command" and not is_modelled(use.name, () if for_tests else use.conditions) for use in build.uses
+    )

@@ -5,7 +5,7 @@ import re
 
 from ...conditions.cmake import parse_constant
 from .blocks import CommandCall
-from .build import GeneratedInterfaces, Link, RefusedName
+from .build import GeneratedInterfaces, Link, RefusedName, is_for_tests
 from .drafts import TargetDraft
 from .genex import reduce_expression, rejoin
 from .interpreter import BINARY, Interpreter, calls_unmodelled, handles
@@ -182,7 +182,8 @@ def resolve_target(run: Interpreter, name: Word) -> TargetDraft:
     typesupport = run.is_typesupport(name)
     known = typesupport or name in run.maybe_set or name in run.maybe_made or "::" in name
     known = known or (run.command == "add_dependencies" and _may_be_made_along(run, name))
-    if not known and not _is_asked_for(run, name) and not calls_unmodelled(run):
+    for_tests = is_for_tests(run.merge_with(name))
+    if not known and not _is_asked_for(run, name) and not calls_unmodelled(run, for_tests):
         run.refuse("no target", name)
     return run.ensure_target(name, "generated" if typesupport else "unknown", name.at)
 

@@ -1,7 +1,8 @@
 """Classes whose bases are classes of the workspace too: methods that override none of theirs, and pure virtual ones
 that a class of which objects are made leaves out.
 
-An answer rests on classes that are known as a whole: of one definition, no templates, without macros.
+An answer rests on classes that are known as a whole: of one definition, without macros; templates with the arguments
+that they are given. Where such a base is derived from a class of another package in turn, the target has a say.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import NamedTuple
 from ....edges.memory import cache_method
 from ...facts.cpp.schema import CodePlace, CodeSpot, CppClass, Declaration
 from ...targets.surface.overrides import differs_plainly
-from .resolver import KnownFile, Resolver
+from .resolver import KnownFile, Resolver, parse_type, substitute_class
 from .uses import normalise_parameter
 
 # A base of the standard library that has nothing virtual.
@@ -37,7 +38,8 @@ class LostOverride(NamedTuple):
 
     kind: `absent` (no base has a method of its name), `plain` (none of them is virtual), `types` (they have other
     parameters), or `result`. base: the class that has the method, else the first base. declared: the method of the
-    base, as far as it is known."""
+    base, as far as it is known. outer: the classes of other packages among the bases, which must have no method of its
+    name."""
 
     kind: str
     base: str
@@ -45,6 +47,14 @@ class LostOverride(NamedTuple):
     spot: CodeSpot
     class_: str
     declared: str
+    outer: tuple[str, ...] = ()
+
+
+class Lineage(NamedTuple):
+    """The bases of a class, and theirs. own: of the workspace; outer: of other packages, as they are written."""
+
+    own: tuple[CppClass, ...]
+    outer: tuple[str, ...]
 
 
 class LeftOut(NamedTuple):
@@ -68,11 +78,11 @@ class OwnClasses:
     def list_lost_overrides(self, class_: CppClass) -> Iterator[LostOverride]:
         """Methods of a class that say `override` and surely override nothing."""
         marked = [one for same in class_.members.values() for one in same if _is_marked(one)]
-        bases = self.list_bases(class_, whole=True) if marked and not class_.template else None
-        for method in marked if bases else ():
-            found = self._judge(method, class_, bases or ())
-            if found is not None:
-                yield found
+        bases = self.list_bases(class_) if marked and not class_.template else None
+        for method in marked if bases is not None and bases.own else ():
+            found = self._judge(method, class_, bases.own) if bases is not None else None
+            if found is not None and bases is not None:
+                yield found._replace(outer=bases.outer)
 
     def _judge(self, method: Declaration, class_: CppClass, bases: Collection[CppClass]) -> LostOverride | None:
         assert method.at is not None
@@ -97,7 +107,8 @@ class OwnClasses:
 
     def list_left_out(self, class_: CppClass, path: str) -> Iterator[LeftOut]:
         """The pure virtual methods that a class and its bases surely do not implement."""
-        bases = self.list_bases(class_, whole=False) if not class_.template else None
+        lineage = self.list_bases(class_) if not class_.template else None
+        bases = lineage.own if lineage is not None else ()
         if not bases or not all(map(_is_closed, (class_, *bases))):
             return
         for base in bases:
@@ -155,32 +166,46 @@ class OwnClasses:
         pairs = (pair for file in self.files for pair in file.known.facts.parents)
         return tuple(frozenset(words.split()) - _ACCESS for last, words in pairs if last == name)
 
-    def list_bases(self, class_: CppClass, whole: bool) -> tuple[CppClass, ...] | None:
-        """The classes that a class is derived from, also those of its bases; None where one is not known. whole: all of
-        them have to be of the workspace; else those of other packages, which cannot be derived from them, are left out.
-        """
+    def list_bases(self, class_: CppClass) -> Lineage | None:
+        """All bases of a class; None where one is not known. What those of other packages are derived from is left out,
+        which is nothing of the workspace."""
         found: dict[str, CppClass] = {}
-        waiting = [class_]
+        outer: dict[str, None] = {}
+        # Each as it is written, and with the arguments of a template.
+        waiting = [(class_, class_)]
         while waiting:
-            at = waiting.pop(0)
+            at, filled = waiting.pop(0)
             # Where a directive stands between the bases, what was parsed is one of several possibilities.
             words = frozenset(re.findall(r"[A-Za-z_]\w*", " ".join(at.bases)))
             if at.bases and (len(found) > _DEEPEST or self._list_words(at.name.rpartition("::")[2]) != (words,)):
                 return None
-            for base in at.bases:
+            for base in filled.bases:
                 if _WITHOUT_METHODS.match(base):
                     continue
-                own = self.find_class(base, at.name.rpartition("::")[0]) if "<" not in base else None
+                parts = parse_type(base)
+                own = self.find_class(parts.outer, at.name.rpartition("::")[0]) if not parts.tail else None
                 if own is None:
                     name = base.partition("<")[0].rpartition("::")[2]
-                    if whole or any(file.known.declares_type(name) for file in self.files):
+                    if any(file.known.declares_type(name) for file in self.files):
                         return None
-                elif own[1].template or own[1].specialised:
+                    outer[self.resolver.spell_out(base, at)] = None
+                elif own[1].specialised or bool(own[1].template) != bool(parts.arguments):
                     return None
                 elif own[1].name not in found and own[1].name != class_.name:
-                    found[own[1].name] = own[1]
-                    waiting.append(own[1])
-        return tuple(found.values())
+                    arguments = tuple(self._spell_argument(one, at) for one in parts.arguments or ())
+                    found[own[1].name] = substitute_class(own[1], arguments) if arguments else own[1]
+                    waiting.append((own[1], found[own[1].name]))
+        return Lineage(tuple(found.values()), tuple(outer))
+
+    def _spell_argument(self, argument: str, class_: CppClass) -> str:
+        """An argument of a template as it is understood wherever it stands; one that only says that it is a type where
+        that cannot be known."""
+        spelt = self.resolver.spell_out(argument, class_)
+        bare = spelt.strip()
+        if bare in _SORTS or _INTEGER.issuperset(bare.split()) or "::" in bare:
+            return bare
+        own = self.find_class(bare, class_.name.rpartition("::")[0])
+        return f"::{own[1].name}" if own is not None else f"typename {bare}"
 
     def _differs(self, method: Declaration, class_: CppClass, other: Declaration, base: CppClass) -> bool:
         """Whether two methods surely do not have the same parameters."""

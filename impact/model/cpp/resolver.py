@@ -512,7 +512,7 @@ class Resolver:
         homes = self.list_own_classes(class_)
         if len(homes) != 1 or depth > _DEEPEST:
             return
-        one = _substitute_class(homes[0], arguments) if homes[0].template and arguments else homes[0]
+        one = substitute_class(homes[0], arguments) if homes[0].template and arguments else homes[0]
         yield one
         for base in one.bases:
             parts = parse_type(base)
@@ -576,7 +576,7 @@ class Resolver:
         return [
             known
             for one in self.list_own_classes(type_.name)
-            for inner in one.bases
+            for inner in (substitute_class(one, type_.arguments) if one.template else one).bases
             for known in self.list_known_bases(inner, locate_class(one), depth + 1)
         ]
 
@@ -811,13 +811,23 @@ def _substitute_text(text: str, parameters: Iterable[str], arguments: Iterable[s
     return text
 
 
-def _substitute_class(class_: CppClass, arguments: tuple[str, ...]) -> CppClass:
+def substitute_class(class_: CppClass, arguments: tuple[str, ...]) -> CppClass:
     """A class with the arguments of its template in the places of the parameters."""
+
+    def fill(text: str) -> str:
+        return _substitute_text(text, class_.template, arguments)
+
     members = {
-        name: [one._replace(type=_substitute_text(one.type, class_.template, arguments)) for one in those]
+        name: [
+            one._replace(
+                type=fill(one.type),
+                parameters=tuple(parameter._replace(type=fill(parameter.type)) for parameter in one.parameters),
+            )
+            for one in those
+        ]
         for name, those in class_.members.items()
     }
-    bases = tuple(_substitute_text(base, class_.template, arguments) for base in class_.bases)
+    bases = tuple(map(fill, class_.bases))
     return class_._replace(members=members, bases=bases)
 
 

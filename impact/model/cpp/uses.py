@@ -11,7 +11,7 @@ from ...facts.cpp.syntax import UNREAD, Mention
 from ...targets.surface.overrides import describe_bases, describe_override, spell_type
 from ..api import CALLED, CLASSES, ChangingName, FoundName
 from ..members import FoundField as FoundMember
-from .resolver import CppType, KnownFile, Resolver, locate_class
+from .resolver import CppType, KnownFile, Resolver, locate_class, substitute_class
 
 # The types of quality of service: those of rclcpp, and the structure of rmw which they replaced.
 _QOS_TYPES = {
@@ -412,7 +412,8 @@ class ApiUses:
             own = self.resolver.list_own_classes(type_.name)
             if len(own) != 1 or own[0].open or word in own[0].members:
                 return None
-            inner = self._list_all_bases(own[0], word, depth + 1)
+            filled = substitute_class(own[0], type_.arguments) if own[0].template else own[0]
+            inner = self._list_all_bases(filled, word, depth + 1)
             if inner is None:
                 return None
             found += inner

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import posixpath
+import re
 from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
@@ -35,7 +36,11 @@ _CALL_NOTHING = frozenset(("Node", "object", "Object"))
 # Methods of strings that change them; algorithms that write where they are pointed to; those of Boost's string library.
 _CHANGE_STRING = frozenset(("insert", "erase", "replace", "push_back", "pop_back", "assign", "clear", "resize", "swap"))
 _CHANGE_RANGE = frozenset(("transform", "replace", "replace_if", "remove", "remove_if", "reverse", "rotate", "fill"))
+# What says how a parameter is handed over, and nothing of what it is.
+_HANDED_OVER = re.compile(r"\bconst\b|\btypename\b|[&*]")
 _CHANGE_IN_PLACE = ("replace_", "erase_", "trim", "to_lower", "to_upper")
+# Methods of pluginlib's ClassLoader<T> that make a T.
+MAKES_PLUGIN = frozenset(("createInstance", "createSharedInstance", "createUniqueInstance", "createUnmanagedInstance"))
 # Endings of C++ files that hold no declarations for others.
 SOURCES = (".cpp", ".cc", ".cxx", ".c++", ".c", ".cu")
 
@@ -239,7 +244,7 @@ def _is_string_type(written: str) -> bool:
 @lru_cache(maxsize=100_000)
 def is_number(text: str) -> bool:
     """Whether a text is a whole number that a program could count to."""
-    return len(text) < 19 and text.isdecimal()
+    return len(text) < 19 and text.isdecimal() and (text[0] != "0" or text == "0")
 
 
 @lru_cache(maxsize=100_000)
@@ -746,6 +751,9 @@ class FlowCode:
         by_path, source = self._constants.get(get_tail(variable.name), {}), fn.source
         if source.facts.language == "python":
             return by_path.get(variable.owner, [])
+        if "::" in variable.name:
+            # `namespace t = robot::topics`
+            variable = variable._replace(name=self.resolve_name(variable.name, source, fn.scope))
         if not by_path:
             return []
         seen = self._seen_files.list_seen(source.path)
@@ -761,6 +769,10 @@ class FlowCode:
             found = (self.list_definitions(names.pop()) if len(names) == 1 else []) or found
         files = {one.path for _, one in found}
         return found if len(files) < 2 or len({constant.value for constant, _ in found}) == 1 else []
+
+    def list_seen_sources(self, path: str) -> list[CodeFile]:
+        """The C++ files that one sees, itself among them."""
+        return [self._by_path[seen] for seen in sorted(self._seen_files.list_seen(path)) if seen in self._by_path]
 
     def list_definitions(self, name: str) -> list[tuple[DataMember, CodeFile]]:
         """What C++ files define under a full name that another declares: a static member, a variable that is extern."""
@@ -784,6 +796,20 @@ class FlowCode:
     def find_first(self, source: CodeFile, otherwise: Fn) -> Fn:
         """The first function of a file; `otherwise` for a file without functions."""
         return next(iter(self.functions_in.get(source.path, ())), otherwise)
+
+    @cache_method
+    def find_held_class(self, cls: Cls, name: str) -> Cls | None:
+        """The class of the code of which a member holds an object itself."""
+        for one in self.list_bases(cls):
+            for member in one.facts.members:
+                if member.name == name:
+                    held = member.type and not _points(member.type) and "<" not in member.type
+                    return self.find_class_of_type(member.type, one.source, one.name) if held else None
+        return None
+
+    def find_written_type(self, path: str, fn: Fn) -> str:
+        """The type that a variable is declared with, as written."""
+        return self.find_declared_type(self.identify(path, fn, 9), fn)[0]
 
     @cache_method
     def _find_member_type(self, owner: str, name: str) -> tuple[str, CodeFile, str] | None:
@@ -835,6 +861,10 @@ class FlowCode:
         if last in ("make_shared", "make_unique") or (last == "create" and "::" in name):
             scope = get_outer(name)
             return self.resolve_written(scope, fn.source, fn.scope) if scope not in ("std", "boost", "") else UNKNOWN
+        if last in MAKES_PLUGIN and "." in name:
+            loader = self.resolve_name_type(name.rpartition(".")[0], fn, depth + 1)
+            if loader.arguments:
+                return self.resolve_written(loader.arguments[0], fn.source, fn.scope)
         for target in self.list_targets(name, fn, depth + 1):
             if target.facts.returns:
                 return self.resolve_written(target.facts.returns, target.source, target.scope)
@@ -1057,7 +1087,7 @@ class FlowCode:
         reached = (
             (target, (fn, call))
             for fn, call in calls
-            for target in _select_overloads(self.list_targets(call.callee, fn), call)
+            for target in _select_overloads(self.list_targets(call.callee, fn), call, fn)
         )
         return group_pairs((target, caller) for target, caller in reached if caller[0] is not target)
 
@@ -1094,6 +1124,13 @@ class FlowCode:
                     cls = self.find_class(name, fn.source, fn.scope)
                     if cls is not None:
                         found.setdefault(cls.key, []).append((fn, arguments, line))
+        for cls in (cls for group in self.classes.values() for cls in group if cls.source.facts.language == "cpp"):
+            for member in cls.facts.members:
+                given = member.value
+                held = self.find_held_class(cls, member.name) if given is not None and given.kind == "make" else None
+                maker = next(iter(self.list_functions(cls)), None) if held is not None else None
+                if held is not None and given is not None and maker is not None:
+                    found.setdefault(held.key, []).append((maker, given.parts, member.line))
         return found
 
     @cached_property
@@ -1185,6 +1222,14 @@ def _find_made(fn: Fn, code: FlowCode) -> Iterator[tuple[str, tuple[FlowExpr, ..
             yield get_outer(call.callee), call.arguments, call.line
         elif fn.source.facts.language == "python" and (last[:1].isupper() or code.is_class(call.callee, fn)):
             yield code.resolve_name(call.callee, fn.source), call.arguments, call.line
+        elif last == "emplace_back" and call.callee != last and fn.source.facts.language == "cpp":
+            # Into a container of objects: of pointers, it is given one.
+            written = code.find_written_type(call.callee.rpartition(".")[0], fn)
+            cls = code.find_class_of_type(written, fn.source, fn.scope) if written and not _points(written) else None
+            if cls is not None and not _is_one_of(call.arguments, cls, fn, code):
+                yield cls.name, call.arguments, call.line
+        elif "." not in call.callee and fn.source.facts.language == "cpp" and code.is_class(call.callee, fn):
+            yield call.callee, call.arguments, call.line
         for argument in call.arguments:
             if argument.parts or argument.kind == "make":
                 for value in _list_makes(argument):
@@ -1193,6 +1238,34 @@ def _find_made(fn: Fn, code: FlowCode) -> Iterator[tuple[str, tuple[FlowExpr, ..
         if each.value.parts or each.value.kind == "make":
             for value in _list_makes(each.value):
                 yield value.text, value.parts, each.line
+        if each.target.startswith("this.") and fn.source.facts.language == "cpp":
+            yield from _list_initialised(each, fn, code)
+
+
+def _list_initialised(each: Assignment, fn: Fn, code: FlowCode) -> Iterator[tuple[str, tuple[FlowExpr, ...], int]]:
+    """The object that the initialiser of a constructor makes as a member: `left_(node, "left")`."""
+    value, name = each.value, each.target[5:]
+    given = value.parts if value.kind in ("make", "list") and not value.text else (value,)
+    if (value.kind == "make" and value.text) or value.kind not in ("make", "list", "name", "text"):
+        return
+    owner = code.find_owner(fn) if code.is_constructor(fn) else None
+    cls = code.find_held_class(owner, name) if owner is not None else None
+    if cls is not None and not _is_one_of(given, cls, fn, code):
+        yield cls.name, given, each.line
+
+
+def _is_one_of(arguments: tuple[FlowExpr, ...], cls: Cls, fn: Fn, code: FlowCode) -> bool:
+    """Whether arguments are one object of a class, which is copied or moved then."""
+    if len(arguments) != 1:
+        return False
+    one = arguments[0]
+    if one.kind == "call" and get_tail(one.text) == "move" and len(one.parts) == 1:
+        one = one.parts[0]
+    return code.find_class_of(code.resolve_type(one, fn, 3), fn) is cls
+
+
+def _points(type_: str) -> bool:
+    return "*" in type_ or "&" in type_ or "ptr" in type_.lower()
 
 
 def _list_makes(value: FlowExpr, depth: int = 0) -> list[FlowExpr]:
@@ -1234,12 +1307,41 @@ def _rate_nearness(cls: Cls, source: CodeFile, scope: str) -> int:
     return near + (_is_within(scope, get_outer(cls.name)) if get_outer(cls.name) else 0)
 
 
-def _select_overloads(targets: list[Fn], call: FlowCall) -> list[Fn]:
-    """Of functions of one name in C++ those that take as many arguments as a call has; all where none does."""
+def _select_overloads(targets: list[Fn], call: FlowCall, fn: Fn) -> list[Fn]:
+    """Of functions of one name in C++ those that take as many arguments as a call has, and of these those that take
+    variables of the types it gives; all where none does."""
     if len(targets) < 2 or targets[0].source.facts.language != "cpp":
         return targets
     given = len(call.arguments)
-    return [one for one in targets if len(one.facts.parameters) == given] or targets
+    fitting = [one for one in targets if len(one.facts.parameters) == given]
+    if len(fitting) < 2:
+        return fitting or targets
+    types = [_find_declared_type(argument, fn) for argument in call.arguments]
+    exact = [one for one in fitting if _takes_types(one, types)] if any(types) else []
+    return exact or fitting
+
+
+def _find_declared_type(argument: FlowExpr, fn: Fn) -> str:
+    """The type that a variable of a function is declared with, empty for what is no variable, or of no such type."""
+    if argument.kind != "name" or not argument.text.isidentifier():
+        return ""
+    made = fn.assigned.get(argument.text, ()) if argument.text in fn.locals else ()
+    declared = {row.type for row in made if row.type}
+    declared |= {one.type for one in fn.facts.parameters if one.name == argument.text}
+    found = _read_plain_type(declared.pop()) if len(declared) == 1 else ""
+    return "" if found == "auto" else found
+
+
+def _takes_types(fn: Fn, types: list[str]) -> bool:
+    """Whether the parameters of a function are of these types, as far as they are known."""
+    taken = [_read_plain_type(one.type) for one in fn.facts.parameters]
+    return all(not given or f"::{given}".endswith(f"::{own}") or f"::{own}".endswith(f"::{given}")
+               for given, own in zip(types, taken, strict=True))  # fmt: skip
+
+
+def _read_plain_type(written: str) -> str:
+    """A type without what says how it is handed over."""
+    return "".join(_HANDED_OVER.sub(" ", written).split())
 
 
 def _select_named(

@@ -14,6 +14,7 @@ from ..workspace import Workspace
 from .defined import list_released
 from .graph import Endpoint, Graph, Node
 from .launches import Launch
+from .names import is_open
 from .select import get_kind
 from .workspace import get_flow
 
@@ -127,7 +128,8 @@ class Flow:
         for one in self.graph.endpoints:
             if not self.is_sure(one):
                 head = _ABSOLUTE.match(one.written) if not one.topic else None
-                found.setdefault(one.role, {}).setdefault(one.type, set()).add(head[1] if head else "")
+                begins_so = head[1] if head else one.topic.partition("<")[0] if is_open(one.topic) else ""
+                found.setdefault(one.role, {}).setdefault(one.type, set()).add(begins_so)
         if self._unclear:
             found.setdefault("publisher", {}).setdefault("", set()).add("")
         return found

@@ -11,6 +11,8 @@ from ...facts.flow import Assignment, FlowCall, FlowExpr
 from .code import FlowCode, Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number
 from .reaching import LOOPS
 
+SETTING = "setting"
+"""The kind of an expression that stands for the value of a parameter as a launch gives it."""
 _DEEPEST = 8
 _MOST = 200
 # Expressions looked at for one list.
@@ -31,6 +33,9 @@ _OF_DICTIONARIES = {"keys": 0, "values": 1}
 # In a pair of C++.
 _MEMBERS = {"first": 0, "second": 1}
 
+# Ends the path of an element at a place that is a variable.
+_ANY = ".[]"
+_BEGIN = re.compile(r"(.+)\.c?begin")
 _COUNTS = re.compile(r"(\w+) (<=?) (\d{1,4})")
 
 
@@ -51,20 +56,35 @@ class HeldList(NamedTuple):
 
 class Elements:
     """The elements of the lists and dictionaries of a body of code. runs: which functions run; way: the only call
-    through which a function is reached; made: by constructor who gives it its arguments, where that is known."""
+    through which a function is reached; made: by constructor who gives it its arguments, where that is known. given:
+    what a launch makes of an expression; find_turn: the only turn of the loop that begins on a line, None for any."""
 
     def __init__(
         self, code: FlowCode, runs: Callable[[Fn], bool] = lambda fn: True, way: Mapping[Fn, FlowCall] | None = None,
         made: Mapping[Fn, Sequence[Made]] | None = None,
+        given: Callable[[FlowExpr, Fn, int], list[ListElement] | None] = lambda value, fn, line: None,
+        find_turn: Callable[[Fn, int], int | None] = lambda fn, line: None,
     ):  # fmt: skip
         self.code, self._runs, self._way, self._made = code, runs, way or {}, made or {}
+        self._find_given, self._find_turn = given, find_turn
         self._left = 0
 
     def list_walked(self, container: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
         """What a loop over a list or dictionary goes through: a pair for each key of a dictionary. None where that is
         not written out."""
         held = self._find_held(container, fn, line)
-        return _join_held(held) if held else None
+        return self._take_turn(held, fn, line) if held else None
+
+    def list_turns(self, container: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
+        """What a loop goes through in its turns, one in each. None where that is not written out in one place."""
+        held = self._find_held(container, fn, line)
+        return list(held[0].elements) if held and len(held) == 1 and held[0].whole else None
+
+    def _take_turn(self, held: list[HeldList], fn: Fn, line: int) -> list[ListElement]:
+        """Of the elements of lists those that the loop which begins on a line goes through: that of its turn alone,
+        where one is chosen."""
+        turn = self._find_turn(fn, line) if len(held) == 1 and held[0].whole else None
+        return _join_held(held) if turn is None else list(held[0].elements[turn : turn + 1])
 
     def select(self, container: FlowExpr, key: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
         """What stands at a place, or at a key, that is a literal. None where that is not written out."""
@@ -120,6 +140,10 @@ class Elements:
             return None
         if value.kind == "list":
             return [HeldList(tuple(ListElement(part, fn, line) for part in value.parts))]
+        if value.kind in ("name", "call") and (given := self._find_given(value, fn, line)):
+            return [HeldList(tuple(given))]
+        if value.kind == "name" and value.text.endswith(_ANY):
+            return self._list_any(value.text.removesuffix(_ANY), fn, line, depth)
         if value.kind == "make":
             return self._list_made(value, fn, line, depth)
         if value.kind == "name":
@@ -153,13 +177,20 @@ class Elements:
         if not held:
             return None
         if key.kind == "other" and not key.text:
-            inner = _join_held(held)
+            inner = self._take_turn(held, fn, line)
         else:
             chosen = [_select_one(one, key) if one.whole else None for one in held]
             inner = [one for one in chosen if one is not None]
             if len(inner) < len(chosen):
                 return None
         return self._join_lists(inner, depth)
+
+    def _list_any(self, path: str, fn: Fn, line: int, depth: int) -> list[HeldList] | None:
+        """The lists that `path[i]` is in the turns of the only loop around it that counts the elements."""
+        around = {place for guard in fn.collect_guards(line) for place in fn.list_guards_around(guard)}
+        loops = [place for place in around if f"{path}.size()" in fn.facts.guards[place].text]
+        held = self._list_held(FlowExpr("name", path), fn, line, depth + 1) if len(loops) == 1 else None
+        return self._join_lists(self._take_turn(held, fn, fn.facts.guards[loops[0]].line), depth) if held else None
 
     def _join_lists(self, elements: Iterable[ListElement], depth: int) -> list[HeldList] | None:
         found: list[HeldList] = []
@@ -174,7 +205,8 @@ class Elements:
         head, _, last = value.text.rpartition(".")
         python = fn.source.facts.language == "python"
         if python and head and not value.parts and last in ("items", "copy", *_OF_DICTIONARIES):
-            held = self._list_held(value.receiver or FlowExpr("name", head), fn, line, depth + 1)
+            called = self._find_called(head, fn, line)
+            held = self._list_held(value.receiver or called or FlowExpr("name", head), fn, line, depth + 1)
             return _select_column(held, _OF_DICTIONARIES[last]) if held and last in _OF_DICTIONARIES else held
         if python and not head and value.text == "range":
             return _make_range(value, fn, line)
@@ -186,6 +218,12 @@ class Elements:
             return self._list_held(returned[0][0].value, returned[0][1], returned[0][0].line, depth + 1)
         return None
 
+    def _find_called(self, path: str, fn: Fn, line: int) -> FlowExpr | None:
+        """The call that a path which ends in one names, with its arguments; None where a line has several such."""
+        name = path.removesuffix("()")
+        calls = [call for call in fn.list_calls(name) if call.line == line] if name != path else []
+        return FlowExpr("call", name, calls[0].arguments) if len(calls) == 1 else None
+
     def _list_joined(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[HeldList] | None:
         """`[...] + [...]`."""
         parts = [self._list_held(part, fn, line, depth + 1) for part in value.parts]
@@ -195,14 +233,24 @@ class Elements:
         return [HeldList(tuple(one for part in known for one in part.elements), all(part.whole for part in known))]
 
     def _list_named(self, path: str, fn: Fn, line: int, depth: int) -> list[HeldList] | None:
+        head, _, last = path.rpartition(".")
+        if last in _MEMBERS and head and fn.source.facts.language == "cpp":
+            # In a loop over a map, what each key has.
+            rows = self._list_held(FlowExpr("name", head), fn, line, depth + 1)
+            if rows and all(one.whole and len(one.elements) == 2 for one in rows):
+                return self._join_lists([one.elements[_MEMBERS[last]] for one in rows], depth)
         variable = self.code.identify(path, fn)
+        begun = self._find_walked(variable, fn)
+        if begun is not None:
+            each = FlowExpr("index", "", (FlowExpr("name", begun[0]), FlowExpr("other")))
+            return self._list_inner(each, fn, begun[1], depth)
         found: list[HeldList] = []
         further: list[ListElement] = []
         written = self.code.list_writes(variable)
         if variable.kind == "member":
             # What another program writes into its own object, unless nothing that runs writes it.
             written = [row for row in written if self._runs(row[0])] or written
-        for writer, each in _select_reaching(written, variable, fn, line):
+        for writer, each in _select_holding(written, variable, fn, line):
             if each.key is not None:
                 further.append(ListElement(FlowExpr("list", "", (each.key, each.value)), writer, each.line))
                 continue
@@ -225,6 +273,14 @@ class Elements:
                 return None
             found += inner
         return self._add_put(found, further, path, fn)
+
+    def _find_walked(self, variable: Variable, fn: Fn) -> tuple[str, int] | None:
+        """The list or map that an iterator goes through one by one, and the line where it begins."""
+        written = [each for writer, each in self.code.list_writes(variable) if writer is fn]
+        if len(written) != 2 or written[1].operator != "+=":
+            return None
+        begun = find_begun(written[0].value)
+        return (begun.text, written[0].line) if begun is not None else None
 
     def _add_put(self, found: list[HeldList], further: list[ListElement], path: str, fn: Fn) -> list[HeldList] | None:
         """Lists with what is put into them afterwards; None where that is not followed."""
@@ -272,15 +328,29 @@ class Elements:
                 yield ListElement(default, fn, fn.facts.line)
 
 
-def _select_reaching(
+def find_begun(value: FlowExpr) -> FlowExpr | None:
+    """The list or map that `list.begin()` goes through; None for all else."""
+    begun = _BEGIN.fullmatch(value.text) if value.kind == "call" else None
+    return FlowExpr("name", begun[1]) if begun else None
+
+
+def _select_holding(
     written: Sequence[tuple[Fn, Assignment]], variable: Variable, fn: Fn, line: int
 ) -> Sequence[tuple[Fn, Assignment]]:
     """Of assignments to a variable those that may hold on a line of a function: where it is a local one, none that is
     surely replaced before, and none that comes after."""
     if variable.kind != "local" or any(writer is not fn for writer, _ in written):
         return written
+    return select_reaching(written, fn, line)
+
+
+def select_reaching(
+    written: Sequence[tuple[Fn, Assignment]], fn: Fn, line: int
+) -> Sequence[tuple[Fn, Assignment]]:  # fmt: skip
+    """Of assignments in a function those that may hold on a line of it, 0 for its end: none that is surely replaced
+    before, and none that comes after."""
     guards = {place for guard in fn.collect_guards(line) for place in fn.list_guards_around(guard)}
-    before = [each for _, each in written if each.line <= line]
+    before = [each for _, each in written if not line or each.line <= line]
     sure = [
         each.line for each in before
         if each.key is None and each.operator in ("=", "for") and (each.guard < 0 or each.guard in guards)
@@ -313,7 +383,7 @@ def _select_one(held: HeldList, key: FlowExpr) -> ListElement | None:
             return None
         return held.elements[place]
     if key.kind == "text" and len(pairs) == len(held.elements):
-        found = [one for one in pairs if one.value.parts[0] == key]
+        found = [one for one in pairs if one.value.parts[0] == key or one.value.parts[0] == FlowExpr(SETTING, key.text)]
         if len(found) == 1:
             return found[0]._replace(value=found[0].value.parts[1])
     return None

@@ -17,16 +17,19 @@ from ....edges.memory import cache_method
 from ...facts.cpp.names import split_at_commas
 from ...facts.flow import FlowCall, FlowExpr
 from ...facts.python.text import join_dotted
+from ...targets.constants import load_constants
 from .calls import Calls, FrameworkCall
 from .code import FlowCode, Fn, Variable, find_parameter, get_outer, get_tail, is_number
+from .contexts import Contexts
 from .defined import DefinedInterfaces
 from .graph import Role
+from .handles import NodeHandles, join_spaces
 from .modules import CodeFile
+from .outside_constants import OutsideConstants
 from .templates import Templates
 from .types import find_header_interface, find_interface, parse_flow_type
-from .values import LOST, FlowValue, FlowValues, make_sibling
+from .values import LOST, WHICH_TURN, FlowValue, FlowValues, make_sibling
 
-_HANDLES = frozenset(("handle", "image_transport", "cloud_transport"))
 _NOT_YET = frozenset(("", "None", "nullptr"))
 _CONNECTS = ("connectInput", "reset")
 _PUTS = frozenset(("push_back", "emplace_back", "emplace", "insert", "append", "make_pair", "reset"))
@@ -58,6 +61,14 @@ class Site(NamedTuple):
     reason: str = ""
     implied: bool = False
     types: tuple[TemplateType, ...] = ()
+
+
+class JoinedFilters(NamedTuple):
+    """Subscribers of filters that are given to one synchronizer, in their order. registered: path and line of the call
+    that gives it the callback."""
+
+    filters: tuple[Variable, ...]
+    registered: tuple[str, int]
 
 
 class Statement(NamedTuple):
@@ -155,8 +166,9 @@ class Sites:
     def __init__(self, code: FlowCode, calls: Calls, values: FlowValues, defined: DefinedInterfaces):
         self.code, self.calls, self.values, self.defined = code, calls, values, defined
         self.templates = Templates(code)
+        self.handles, self.contexts = NodeHandles(calls), Contexts(code)
         values.find_prefix = self.find_prefix
-        values.find_message_text = self.find_message_text
+        values.find_outside_text = self.find_outside_text
 
     @cached_property
     def endpoints(self) -> list[Site]:
@@ -211,8 +223,7 @@ class Sites:
         calls, row = self.calls, use.row
         named = calls.find_argument(use, row.topic)
         fixed = bool(row.topic) and isinstance(row.topic[0], str) and row.topic[0].startswith("=")
-        prefix = "" if fixed else self.find_prefix(use)
-        names = self.list_names(use, prefix, self.values)
+        prefix, names = self.find_names(use, self.values)
         callbacks, reason = self._find_callbacks(use)
         site = Site(
             _ROLES[row.does], use, names, unparse(named), prefix, self.find_type(use), callbacks,
@@ -227,22 +238,58 @@ class Sites:
             yield site._replace(names=infos, type="sensor_msgs/CameraInfo", implied=True)
         yield from self._list_implied(site)
 
-    def list_names(self, use: FrameworkCall, prefix: str, values: FlowValues) -> tuple[FlowValue, ...]:
-        """What the name of an endpoint may be, before the node's own. prefix: of its node handle; values: what
-        expressions are worth where it runs."""
+    def find_names(self, use: FrameworkCall, values: FlowValues) -> tuple[str, tuple[FlowValue, ...]]:
+        """The namespace of the node handle that makes an endpoint, and what its name may be, before the node's own.
+        Where there are several namespaces, it is empty, and the names have theirs. values: what expressions are worth
+        where it runs."""
+        spaces, names = self._list_spaces(use, values), self._list_written_names(use, values)
+        if len(spaces) > 1 or len(names) > 1 or any(one.reason == WHICH_TURN for one in names):
+            ways = self.contexts.list_contexts(use.fn, use.call.guard, values)
+            if len(ways) > 1:
+                rows = [(self._list_spaces(use, way), self._list_written_names(use, way)) for way in ways]
+                if len({tuple(each) for each, _ in rows}) > 1 or len(spaces) > 1:
+                    found = [one for each, own in rows for one in self._join_spaces(each, own)]
+                    return "", tuple(dict.fromkeys(found))
+                names = tuple(dict.fromkeys(one for _, own in rows for one in own))
+                known = tuple(one for one in names if one.text is not None)
+                in_part = tuple(one for one in names if one.shown)
+                names = known or in_part or names[:1] if not any(one.beside for one in names) else names
+        if len(spaces) > 1:
+            return "", self._join_spaces(spaces, names)
+        prefix = spaces[0].text or ""
+        if spaces[0].how != "literal" or spaces[0].only_if or prefix.startswith(LOST):
+            return ("" if prefix != "~" else prefix), self._join_spaces(spaces, names)
+        return prefix, names
+
+    def _list_spaces(self, use: FrameworkCall, values: FlowValues) -> list[FlowValue]:
+        fixed = bool(use.row.topic) and isinstance(use.row.topic[0], str) and use.row.topic[0].startswith("=")
+        return [FlowValue("")] if fixed else self.handles.list_prefixes(use, values)
+
+    def _list_written_names(self, use: FrameworkCall, values: FlowValues) -> tuple[FlowValue, ...]:
+        """What the name of an endpoint may be where it is made."""
         found = tuple(values.evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line))
         # What is empty, or nothing, was not given yet.
         empty = (FlowValue(None, "unresolved", "the name is empty"),)
-        found = tuple(one for one in found if one.text not in _NOT_YET) or empty
-        if not prefix.startswith(LOST):
-            return found
-        lost = "the namespace of its node handle is not known"
-        return tuple(
-            FlowValue(None, "unresolved", f"`{prefix}/{value.text}`: {lost}")
-            if value.text is not None and value.text[:1] not in ("/", "~")
-            else value
-            for value in found
-        )
+        return tuple(one for one in found if one.text not in _NOT_YET) or empty
+
+    @staticmethod
+    def _join_spaces(spaces: list[FlowValue], names: tuple[FlowValue, ...]) -> tuple[FlowValue, ...]:
+        """Names in each of some namespaces."""
+        found: list[FlowValue] = []
+        for space in spaces:
+            for name in names:
+                lost = (space.text or "").startswith(LOST)
+                if name.text is None and name.shown and name.shown[:1] not in ("/", "~"):
+                    inside = "" if lost else join_spaces(space, FlowValue(name.shown)).text or ""
+                    found.append(name._replace(shown=inside))
+                elif name.text is None or name.text[:1] in ("/", "~"):
+                    found.append(name)
+                elif lost:
+                    reason = "the namespace of its node handle is not known"
+                    found.append(FlowValue(None, "unresolved", f"`{space.text}/{name.text}`: {reason}"))
+                else:
+                    found.append(join_spaces(space, name))
+        return tuple(dict.fromkeys(found))
 
     @staticmethod
     def _list_implied(site: Site) -> Iterator[Site]:
@@ -379,17 +426,27 @@ class Sites:
                 return self._resolve_interface(kind.arguments[0], fn)
         return ""
 
-    def find_message_text(self, path: str, fn: Fn) -> str | None:
-        """The value of a message's constant that is a string (`Topics::SCAN`, `Topics.SCAN`), None for all else."""
+    def find_outside_text(self, path: str, fn: Fn) -> str | None:
+        """The value of a constant that is a string: of a message (`Topics::SCAN`, `Topics.SCAN`), or of a released
+        package. None for all else."""
+        told = self._find_message_text(path, fn)
+        return self._released.find(path, fn) if told is None else told
+
+    @cached_property
+    def _released(self) -> OutsideConstants:
+        return OutsideConstants(self.code)
+
+    def _find_message_text(self, path: str, fn: Fn) -> str | None:
         head, _, name = path.replace("::", ".").rpartition(".")
-        if not self.defined.texts or not head or head.startswith("this"):
+        if not head or head.startswith("this"):
             return None
         if fn.source.facts.language == "cpp":
             type_ = head.replace(".", "::")
             known = self._resolve_interface(type_, fn) or self._resolve_in_namespaces(type_, fn)
         else:
             known = self._find_imported_type(head, fn.source) or ""
-        return self.defined.texts.get(known, {}).get(name)
+        texts = self.defined.texts.get(known)
+        return texts.get(name) if texts is not None else load_constants().messages.get(known, {}).get(name)
 
     def _resolve_interface(self, type_: str, fn: Fn) -> str:
         return find_interface(self.code.resolve_written(type_, fn.source, fn.scope).name)
@@ -574,18 +631,20 @@ class Sites:
         return found
 
     @cached_property
-    def joined_filters(self) -> list[tuple[Variable, ...]]:
-        """Subscribers of filters that are given to one synchronizer, in their order."""
+    def joined_filters(self) -> list[JoinedFilters]:
+        """The filters of each synchronizer whose callbacks take the messages in their order."""
         code = self.code
         sites = [one for one in self.endpoints if one.role == "subscriber" and not one.use.row.callback]
         filters = {self._find_variable(one.use) for one in sites} - {None}
         straight: dict[Variable, bool] = {}
+        registered: dict[Variable, tuple[str, int]] = {}
         for fn, call in code.list_calls_named(("registerCallback",)):
             name = call.callee.rpartition(".")[0]
             if name:
                 joint = code.identify(name, fn)
                 straight[joint] = straight.get(joint, True) and all(map(_is_in_order, call.arguments[:1]))
-        found: list[tuple[Variable, ...]] = []
+                registered.setdefault(joint, (fn.source.path, call.line))
+        found: list[JoinedFilters] = []
         for joint in straight:
             if not straight[joint]:
                 continue
@@ -593,16 +652,29 @@ class Sites:
                 arguments = given.arguments if isinstance(given, FlowCall) else given.parts
                 row = tuple(each for each in self._list_named(arguments, fn) if each in filters)
                 if row:
-                    found.append(row)
+                    found.append(JoinedFilters(row, registered[joint]))
         return found
 
     def find_position(self, site: Site) -> tuple[int, int] | None:
         """Which of the messages that come through a synchronizer is a subscriber's, and of how many; None where it is
         not known, or not one place."""
+        variable, rows = self._find_joined(site)
+        places = {(row.filters.index(variable), len(row.filters)) for row in rows if row.filters.count(variable) == 1}
+        return next(iter(places)) if len(places) == 1 else None
+
+    def find_joined(self, site: Site) -> tuple[tuple[str, ...], int, tuple[str, int]] | None:
+        """The types of all messages that come through the synchronizer of a subscriber, the place of its own among
+        them, and where the callback is registered; None where that is not known, or not one."""
+        rows = self._find_joined(site)[1]
+        place = self.find_position(site)
+        if place is None or len({row.filters for row in rows}) != 1:
+            return None
+        known = {self._find_variable(one.use): one.type for one in self.endpoints if one.role == "subscriber"}
+        return tuple(known.get(one, "") for one in rows[0].filters), place[0], rows[0].registered
+
+    def _find_joined(self, site: Site) -> tuple[Variable | None, list[JoinedFilters]]:
         variable = self._find_variable(site.use)
-        rows = [row for row in self.joined_filters if variable in row]
-        places = {(row.index(variable), len(row)) for row in rows if row.count(variable) == 1}
-        return next(iter(places)) if variable is not None and len(places) == 1 and rows else None
+        return variable, [row for row in self.joined_filters if variable is not None and variable in row.filters]
 
     @cached_property
     def joins(self) -> dict[Variable, list[Fn]]:
@@ -734,90 +806,11 @@ class Sites:
 
     # Namespaces of node handles
 
-    def find_prefix(self, use: FrameworkCall) -> str:
-        """The namespace of the handle that a name is given to: `~` for a private one, `` for the node's own."""
-        row = use.row
-        if row.first == "node" and use.call.arguments:
-            handle = next((a for a in use.call.arguments if self.calls.is_node(a, use.fn)), None)
-            return self.resolve_handle(handle, use.fn) if handle is not None else ""
-        if row.does in ("action server", "action client") and use.call.arguments:
-            handle = use.call.arguments[0]
-            return self.resolve_handle(handle, use.fn) if self.calls.is_node(handle, use.fn) else ""
-        receiver = self.calls.get_receiver(use)
-        if row.framework in ("roscpp", "image_transport") and receiver:
-            if not receiver.endswith("()"):
-                return self.resolve_handle(FlowExpr("name", receiver), use.fn)
-            made = receiver.removesuffix("()")
-            near = [call for call in use.fn.facts.calls if call.callee == made]
-            near.sort(key=lambda call: abs(call.line - use.call.line))
-            return self.resolve_handle(FlowExpr("call", made, near[0].arguments if near else ()), use.fn)
-        return ""
-
-    def resolve_handle(self, value: FlowExpr, fn: Fn, depth: int = 0) -> str:
-        """The namespace of a node handle, or of a transport that was made with one; it begins with LOST where that is
-        not known."""
-        if depth > 6:
-            return LOST
-        last = get_tail(value.text)
-        if value.kind == "call":
-            if "PrivateNodeHandle" in last or last in ("getPrivateNodeHandle", "private_node_handle"):
-                return "~"
-            if self.calls.find_kinds(self.code.resolve_written(value.text, fn.source, fn.scope), fn) & _HANDLES:
-                return self._resolve_made_handle(value.parts, fn, depth)
-            found = [
-                self.resolve_handle(each.value, target, depth + 1)
-                for target in self.code.list_targets(value.text, fn)
-                for each in target.facts.assignments
-                if each.operator == "return"
-            ]
-            return self._select_agreed(found) if found else self._resolve_unless_handle(value, fn)
-        if value.kind in ("make", "list"):
-            return self._resolve_made_handle(value.parts, fn, depth)
-        if value.kind != "name":
-            return ""
-        variable = self.code.identify(value.text, fn)
-        for writer, each in self.code.list_writes(variable):
-            if each.value.kind in ("make", "list", "call", "name", "text") and each.value != value:
-                if each.value.kind == "text":
-                    return self._resolve_made_handle((each.value,), writer, depth)
-                return self.resolve_handle(each.value, writer, depth + 1)
-        for caller, call in self.code.list_results(variable):
-            if get_tail(call.callee) in ("make_shared", "make_unique"):
-                return self._resolve_made_handle(call.arguments, caller, depth)
-        for other in self._resets.get(variable, ()):
-            return self.resolve_handle(other[1], other[0], depth + 1)
-        copies = [self.resolve_handle(value, setter, depth + 1) for setter in self._list_setters_of_copies(variable)]
-        if copies:
-            return self._select_agreed(copies)
-        named = "priv" in value.text.lower() or get_tail(value.text).strip("_") in ("pnh", "nh_p")
-        private = "~" if named else ""
-        if variable.kind == "local":
-            for one in self.code.list_enclosing_chain(fn):
-                place = find_parameter(one, variable.name)
-                if place is not None:
-                    passed = self.code.list_given(one, place[0], variable.name)
-                    given = [self.resolve_handle(handle, giver, depth + 1) for handle, giver in passed]
-                    return self._select_agreed(given) if given else private or self._resolve_unless_handle(value, fn)
-        return private
-
-    def _list_setters_of_copies(self, variable: Variable) -> list[Fn]:
-        """A function of each file that includes the header of a variable, and sets it."""
-        found: dict[str, Fn] = {}
-        for copy in self.code.list_copies(variable):
-            rows = (*self.code.list_writes(copy), *self.code.list_results(copy), *self._resets.get(copy, ()))
-            found.update((copy.owner, setter) for setter, _ in rows)
-        return list(found.values())
-
-    @staticmethod
-    def _select_agreed(found: list[str]) -> str:
-        """The namespace where all ways lead to the same."""
-        return found[0] if len(set(found)) == 1 else LOST
-
-    def _resolve_unless_handle(self, value: FlowExpr, fn: Fn) -> str:
-        """The node's own namespace for what only stands for a node; that of a handle from elsewhere is not known."""
-        own = value.kind == "call" and get_tail(value.text).endswith("NodeHandle")
-        known = self.calls.find_kinds(self.code.resolve_type(value, fn), fn)
-        return LOST if "handle" in known and not own else ""
+    def find_prefix(self, use: FrameworkCall, values: FlowValues | None = None) -> str:
+        """The namespace of the handle that a name is given to, as Site.prefix has it; it begins with LOST where that is
+        not known, or not one. values: what expressions are worth where it runs."""
+        found = {one.text or "" for one in self.handles.list_prefixes(use, values or self.values)}
+        return found.pop() if len(found) == 1 else LOST
 
     @cached_property
     def _resets(self) -> dict[Variable, list[tuple[Fn, FlowExpr]]]:
@@ -827,28 +820,6 @@ class Sites:
                 variable = self.code.identify(call.callee.rpartition(".")[0], fn)
                 found.setdefault(variable, []).append((fn, call.arguments[0]))
         return found
-
-    def _resolve_made_handle(self, arguments: tuple[FlowExpr, ...], fn: Fn, depth: int) -> str:
-        if not arguments:
-            return ""
-        first = arguments[0]
-        if first.kind in ("text", "join"):
-            return self._resolve_namespace(first, fn)
-        if first.kind == "name" and not self.calls.is_node(first, fn) and self.calls.is_textual(first, fn):
-            return self._resolve_namespace(first, fn)
-        if first.kind == "index":
-            return LOST  # no handle: those are not kept in lists, texts are
-        base = self.resolve_handle(first, fn, depth + 1)
-        if len(arguments) > 1 and (self.calls.is_textual(arguments[1], fn)):
-            below = self._resolve_namespace(arguments[1], fn)
-            if below:
-                return f"{base}/{below}" if base and base != "~" else f"~{below}" if base == "~" else below
-        return base
-
-    def _resolve_namespace(self, value: FlowExpr, fn: Fn) -> str:
-        """What a namespace is that is given to a handle."""
-        text = self.values.find_only_text(value, fn)
-        return LOST if text is None else text
 
     @cached_property
     def kept(self) -> dict[Variable, list[Site]]:

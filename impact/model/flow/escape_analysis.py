@@ -32,6 +32,8 @@ _RUNS = frozenset(
      "dynamic_pointer_cast", "hasattr", "print", "str", "super", "async", "thread", "get",
      "create_timer", "create_wall_timer", "Bond", "TransportHints")
 )  # fmt: skip
+# Functions that read files of YAML, as those of parameters are.
+_READERS = frozenset(("LoadFile", "LoadAllFromFile", "safe_load", "safe_load_all", "full_load"))
 # Functions that ask for parameters whose names the code does not say one by one.
 _WHOLE = frozenset(
     ("get_parameters_by_prefix", "list_parameters", "get_parameters", "declare_parameters", "getParamNames",
@@ -75,10 +77,12 @@ _OWN = frozenset(
 
 
 class UnknownReasons(NamedTuple):
-    """Why not all names, and not all parameters, of a program are known; empty where they are."""
+    """Why not all names, and not all parameters, of a program are known; empty where they are. reads: it reads files of
+    YAML by itself, which may be those of its parameters."""
 
     names: str
     parameters: str
+    reads: bool = False
 
 
 class EscapeAnalysis:
@@ -97,7 +101,8 @@ class EscapeAnalysis:
         steps = (self._list_outside(paths), self._list_bases(one), self._list_given(functions), self._list_dead(one))
         both = next(chain(*steps), "")
         names = both or next(self._list_unnamed(functions), "")
-        return UnknownReasons(names, both or next(self._list_unlisted(functions), ""))
+        reads = any(get_tail(call.callee) in _READERS for fn in functions for call in fn.facts.calls)
+        return UnknownReasons(names, both or next(self._list_unlisted(functions), ""), reads)
 
     @cached_property
     def _order(self) -> dict[Fn, int]:

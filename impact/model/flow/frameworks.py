@@ -55,6 +55,7 @@ class FrameworkRow(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     message: tuple[Spot, ...] = ()
     remaps: tuple[Spot, ...] = ()
     namespace: tuple[Spot, ...] = ()
+    anonymous: tuple[Spot, ...] = ()
     declares: bool = False
     camera_info: bool = False
     also: tuple[Also, ...] = ()
@@ -104,7 +105,7 @@ def _is_ending(full: str, name: str) -> bool:
 def _make_row(raw: dict[str, Any]) -> FrameworkRow:
     spots = (
         "topic", "type", "queue", "qos", "callback", "latch", "period", "default", "variable", "message", "remaps",
-        "namespace",
+        "namespace", "anonymous",
     )  # fmt: skip
     fixed = {name: value if isinstance(value, list) else [value] for name, value in raw.items() if name in spots}
     return msgspec.convert({**raw, **fixed}, FrameworkRow)

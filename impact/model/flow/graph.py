@@ -23,7 +23,8 @@ class Node(msgspec.Struct, frozen=True):
     kind: `executable`, `component`, `nodelet`, `plugin`, `script`, or `library` for code that no executable of the
     workspace uses. plugin: the class, for what is loaded. started: `path:line` of the launch file, empty without one.
     uncertain: why the launch file may give it another name, or may not start it at all. launches: the launch files of
-    the workspace that start it, by themselves or by what they include, where the graph is of all of them.
+    the workspace that start it, by themselves or by what they include, where the graph is of all of them. loads: the
+    plugins of the workspace that its code loads into it, as `package/Class`.
     """
 
     id: str
@@ -38,6 +39,7 @@ class Node(msgspec.Struct, frozen=True):
     started: str = ""
     uncertain: tuple[str, ...] = ()
     launches: tuple[str, ...] = ()
+    loads: tuple[str, ...] = ()
 
 
 class Callback(msgspec.Struct, frozen=True):
@@ -217,8 +219,27 @@ class Coverage(msgspec.Struct, frozen=True):
     missed: tuple[Unresolved, ...] = ()
 
 
+class OutsideNode(msgspec.Struct, frozen=True):
+    """What a launch file starts whose code is not in the workspace: a possible node, or more of them.
+
+    name: with its namespace, in brackets where the launch file leaves it to the program; empty for a launch file.
+    executable: the program, the class that is loaded, or the path of the launch file in its package. kind: `node`, or
+    `launch file`, which may start any number. started: `path:line` that starts it. uncertain: on what it depends that
+    it is started, or its name. names: those that the launch file remaps names of it to, as written.
+    """
+
+    name: str
+    package: str
+    executable: str
+    kind: str
+    started: str
+    uncertain: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()
+
+
 class Graph(msgspec.Struct, frozen=True):
-    """The whole graph. root: the workspace as it was given; rev: the revision read, empty for files on disk."""
+    """The whole graph. root: the workspace as it was given; rev: the revision read, empty for files on disk. outside:
+    what launch files start whose code is not here."""
 
     nodes: tuple[Node, ...]
     endpoints: tuple[Endpoint, ...]
@@ -229,3 +250,4 @@ class Graph(msgspec.Struct, frozen=True):
     root: str = ""
     rev: str = ""
     ros: int = 2
+    outside: tuple[OutsideNode, ...] = ()

@@ -40,9 +40,21 @@ from .graph import (
     Way,
 )
 from .loads import Loaded, list_loaded
-from .names import NameRefused, is_open, join_name, make_open_part, normalise, resolve_ros1_name, resolve_ros2_name
+from .names import (
+    NameRefused,
+    RemappingRule,
+    is_open,
+    join_name,
+    make_open_part,
+    normalise,
+    remap_ros2_name,
+    resolve_ros1_name,
+    resolve_ros2_name,
+)
 from .nodes import BuiltPackage, CodeReach, StartableProgram
 from .objects import NodeObjects, make_key
+from .outside import list_outside
+from .plugin_hosts import PluginHosts, select_own
 from .qos import apply_overrides, find_qos, list_overridable
 from .started import Instance, make_instance
 from .types import FlowType, parse_flow_type
@@ -80,7 +92,8 @@ class Running(NamedTuple):
     expressions are worth there; classes: by key. loaded: how the node loads this program, which is a nodelet then.
     objects: of a program that is several nodes the keys of those that this is, as NodeObject has them, None where it is
     one; others: those of its other nodes alone, where this is the first of them, which has all that no key is about.
-    fixed: what a launch does not change of its name, as NodeObject has it."""
+    fixed: what a launch does not change of its name, remaps: its own remappings, as NodeObject has them. within: of a
+    plugin in the node that loads it, what that runs too; only_if: the condition under which it loads it."""
 
     program: StartableProgram
     node: Node
@@ -92,6 +105,13 @@ class Running(NamedTuple):
     objects: frozenset[str] | None = None
     others: frozenset[str] | None = None
     fixed: frozenset[str] = frozenset()
+    remaps: tuple[RemappingRule, ...] = ()
+    within: set[Fn] | None = None
+    only_if: str = ""
+
+    def limit_values(self) -> FlowValues:
+        """What expressions are worth in what it runs."""
+        return self.values.run(self.functions if self.within is None else self.within)
 
 
 Owner = Running | Node | None
@@ -126,6 +146,7 @@ class Join:
         self.sites = Sites(self.code, self.calls, self.values, defined or DefinedInterfaces())
         self.reach = CodeReach(self.sites)
         self.objects = NodeObjects(self.calls, self.values, ros)
+        self.hosts = PluginHosts(self.calls, self.plugins)
         self.triggers = group_pairs(self._list_triggers())
         # Of a use it is the same in every node that runs it.
         self._qos: dict[int, Qos | None] = {}
@@ -206,7 +227,7 @@ class Join:
     def _drop_closed(self, running: Running) -> tuple[Running, bool]:
         """A node without what it reaches through branches alone that the launch closes, and without objects that it
         makes in these alone; and whether it is made itself."""
-        values = running.values.run(running.functions)
+        values = running.limit_values()
         cut: dict[Fn, Fn] = {}
         shut_lines: set[str] = set()
         for fn in running.functions & self._asking.keys() if values.settings else ():
@@ -275,20 +296,23 @@ class Join:
         first = [one for one in objects if one.name == running.node.name or use in one.uses]
         first = [one for one in first if one.name == running.node.name] or first
         further = [one for one in objects if one not in first] if first else []
+        told = first[0] if len(first) == 1 else None
         if not further:
-            yield running
+            yield running if told is None else running._replace(fixed=told.fixed, remaps=told.remaps)
             return
         count = Counter(key for one in objects for key in one.keys)
         # Which of several nodes any object of a class is, is not known: it counts for the first.
         shared = {key for key in count if count[key] > 1 and key.startswith("any ")}
         own = shared.union(*(one.keys for one in first))
         others = frozenset().union(*(one.keys for one in further)) - own
-        values = first[0].values if len(first) == 1 else running.values
-        fixed = first[0].fixed if len(first) == 1 else frozenset()
-        yield running._replace(objects=own, others=others, values=values, fixed=fixed)
+        values = told.values if told is not None else running.values
+        fixed, remaps = (told.fixed, told.remaps) if told is not None else (frozenset(), ())
+        yield running._replace(objects=own, others=others, values=values, fixed=fixed, remaps=remaps)
         for one in further:
             node = structs.replace(running.node, id=f"{running.node.id}{one.name}", name=one.name)
-            yield running._replace(node=node, objects=one.keys - shared, values=one.values, fixed=one.fixed)
+            yield running._replace(
+                node=node, objects=one.keys - shared, values=one.values, fixed=one.fixed, remaps=one.remaps
+            )
 
     def runs(self, running: Running, use: FrameworkCall, through: Sequence[FrameworkCall] = ()) -> bool:
         """Whether a node runs a use in one of its functions. through: the uses that make what it is called on, where it
@@ -373,13 +397,51 @@ class Join:
     def add_loaded(self, running: Iterable[Running]) -> Iterator[Running]:
         """Nodes, each followed by the nodelets that its program loads into it."""
         programs = [one for one in self.list_running() if one.program.plugin]
-        for one in running:
-            yield one
+        every = list(running)
+        hosted = {id(one): list(self._list_hosted(one)) for one in every}
+        loaded = {part.program for parts in hosted.values() for part in parts if not part.only_if}
+        for one in every:
+            if one.program in loaded and not one.node.name:
+                continue  # it is in the nodes that load it
+            yield one._replace(node=_note_loaded(one.node, hosted[id(one)]))
+            yield from hosted[id(one)]
             for loaded in list_loaded(self.calls, one.functions, one.values, one.node.name):
                 part = next((p for p in programs if self._is_plugin(p.program, loaded.plugin)), None)
                 if part is not None:
                     values = one.values.rename(loaded.name)
                     yield part._replace(node=one.node, values=values, instance=one.instance, loaded=loaded)
+
+    def _list_hosted(self, one: Running) -> Iterator[Running]:
+        """The plugins that a node loads into itself."""
+        if one.program.kind not in ("executable", "component", "nodelet") or not self.plugins:
+            return
+        settings = one.instance.settings if one.instance is not None else {}
+        if one.values.node:
+            below = f"{one.node.name}/"
+            settings = {name[len(below) :]: text for name, text in settings.items() if name.startswith(below)}
+        for load in self.hosts.list_hosted(one.functions, one.values, settings):
+            for part in self.list_running():
+                is_it = self._is_derived(part, load.name) if load.is_base else self._is_plugin(part.program, load.name)
+                if part.program.kind != "plugin" or not is_it or not part.functions:
+                    continue
+
+                def is_named(name: str, program: StartableProgram = part.program) -> bool:
+                    return self._is_plugin(program, name)
+
+                within = one.functions | part.functions
+                values = one.values.apply_launch(
+                    select_own(one.values.settings, is_named), one.values.arguments, one.values.node
+                )
+                for way in self.hosts.list_ways(one.functions, one.values.run(within), part.functions, is_named):
+                    yield part._replace(
+                        node=one.node, values=values.limit_to_calls({**values.way, **way}), instance=one.instance,
+                        within=within, only_if=load.only_if,
+                    )  # fmt: skip
+
+    def _is_derived(self, one: Running, base: str) -> bool:
+        """Whether the class of a plugin derives from one of a name."""
+        named = self.code.classes.get(get_tail(one.program.plugin), ())
+        return any(get_tail(name) == base for cls in named for name in self.code.list_base_names(cls))
 
     def _is_plugin(self, program: StartableProgram, name: str) -> bool:
         """Whether a program is what pluginlib knows by a name."""
@@ -433,6 +495,8 @@ class Join:
             values = running.evaluate(written, candidate.fn, candidate.call.line)
             # `_` stands for a name that options give.
             found = next((value.text for value in values if value.text and value.text != "_"), "")
+            given = self.objects.find_own_name(candidate, running)
+            found = found if given is None else given
             if use is None or found:
                 name, use = found or "", candidate
             if found and "{" not in found:
@@ -447,6 +511,8 @@ class Join:
             written = self.calls.find_argument(use, use.row.topic)
             if written is not None and written.kind != "text" and not self.calls.is_node(written, use.fn):
                 default = _spell_open(written)  # what the code gives is not known
+        if use is not None and name and self._is_anonymous(use, running):
+            name += make_open_part("_<anonymous>")
         full = "" if unknown else normalise("/" + (name or default).lstrip("/"))
         if use is not None and full:
             full = self.objects.join_namespace(use, full.lstrip("/"), running)
@@ -457,6 +523,16 @@ class Join:
             program.line,
         )  # fmt: skip
         return node, use
+
+    def _is_anonymous(self, use: FrameworkCall, running: FlowValues) -> bool:
+        """Whether the name that a use gives may end in what is made up at every start of the program. running: what
+        expressions are worth in it."""
+        asked = self.calls.find_argument(use, use.row.anonymous) if use.row.anonymous else None
+        if asked is None:
+            return False
+        if use.fn.source.facts.language == "cpp":
+            return "AnonymousName" in unparse(asked)
+        return any(value.text != "False" for value in running.evaluate(asked, use.fn, use.call.line))
 
     def _list_plugin_names(self, plugin: str, named: list[FrameworkCall]) -> list[FrameworkCall]:
         """The uses that name the nodes of the class of a plugin, its own before those of its bases."""
@@ -583,9 +659,11 @@ class Join:
             tuple(Unresolved(use.row.does, f"inside `{use.fn.name}`", *_get_place(use)) for use in self.sites.wrapped),
             self._uncompiled,
         )  # fmt: skip
+        known = [one.instance.started for one in running if one.instance is not None]
+        outside = tuple(dict.fromkeys(list_outside(launch, known, self._locate))) if launch is not None else ()
         return Graph(
             owners.list_nodes(), tuple(endpoints), tuple(publishes), tuple(timers), tuple(parameters), coverage, root,
-            rev, self.ros,
+            rev, self.ros, outside,
         )  # fmt: skip
 
     def _list_endpoints(self, owners: _Owners, count: _Count) -> Iterator[Endpoint]:
@@ -698,17 +776,17 @@ class Join:
         """A site as it is for whoever runs it: with the parameters and the arguments that a launch gives."""
         if not isinstance(owner, Running) or site.implied or (owner.values is self.values and self._is_written(site)):
             return site
-        values = owner.values.run(owner.functions)
+        values = owner.limit_values()
         known = self._sites_of.setdefault((id(site.use), bool(values.node)), [])
         for one, is_shared, rests, found in known:
             if (is_shared or one.functions is owner.functions) and values.is_same(rests):
                 return found
         # What code that the node does not run passes to its functions is none of its names.
-        names, rests = values.record(lambda: self.sites.list_names(site.use, site.prefix, values))
+        (prefix, names), rests = values.record(lambda: self.sites.find_names(site.use, values))
         beside: list[Work] = []
         if all(name.text is None for name in names) and any(name.unpassed for name in names):
             # It comes from code that the node does not run, as far as is known.
-            elsewhere, work = owner.values.record(lambda: self.sites.list_names(site.use, site.prefix, owner.values))
+            (_, elsewhere), work = owner.values.record(lambda: self.sites.find_names(site.use, owner.values))
             beside.append(work)
             names = tuple(
                 name if name.text is None else name._replace(only_if=_join_conditions(name.only_if, _PASSED))
@@ -720,7 +798,7 @@ class Join:
             beside.append(work)
         for work in beside:
             rests.note_given(work)
-        found = site._replace(names=names, type=type_)
+        found = site._replace(names=names, prefix=prefix, type=type_)
         known.append((owner, not beside, rests, found))
         return found
 
@@ -740,7 +818,8 @@ class Join:
             policies = list_overridable(use) if any(map(_OVERRIDES, owner.values.settings)) else ()
             qos = apply_overrides(qos, topic, site.role, policies, owner.values.settings) if policies else qos
         replaced = "the name is not replaced" if value.how == "partly" else ""
-        conditions = ("" if site.implied else self._describe_condition(use, owner), value.only_if, replaced)
+        loads = owner.only_if if isinstance(owner, Running) else ""
+        conditions = (loads, "" if site.implied else self._describe_condition(use, owner), value.only_if, replaced)
         only_if = _join_conditions(*conditions)
         return Endpoint(
             site.role, node.id if node else "", topic, type_, *_get_place(use), site.written, how, qos,
@@ -759,7 +838,7 @@ class Join:
     def _list_closed(self, use: FrameworkCall, owner: Owner) -> Iterator[str]:
         """The conditions around a call that do not hold in a node as far as is known, or of which that is not known
         though a launch gives what they ask for."""
-        values = owner.values.run(owner.functions) if isinstance(owner, Running) else self.values
+        values = owner.limit_values() if isinstance(owner, Running) else self.values
         for guard, decided in reversed(list(values.decide_guards(use.fn, use.call.guard))):
             if decided.holds is False or (decided.holds is None and decided.is_given):
                 yield spell_condition(guard.kind, guard.text)
@@ -768,7 +847,7 @@ class Join:
         """Whether a node does not come to a call, by what the launch gives that starts it."""
         if not isinstance(owner, Running) or owner.instance is None or use.call.guard < 0:
             return False
-        values = owner.values.run(owner.functions)
+        values = owner.limit_values()
         decisions = (decided for _, decided in values.decide_guards(use.fn, use.call.guard))
         return any(decided.holds is False and decided.is_given for decided in decisions)
 
@@ -776,9 +855,9 @@ class Join:
         """The full name that a site has in a node, how it is known, and why not."""
         node = _get_node(owner)
         instance = owner.instance if isinstance(owner, Running) else None
-        if value.text is None:
+        text = value.text if value.text is not None else value.shown
+        if value.text is None and not text:
             return "", "unresolved", value.reason
-        text = value.text
         loaded = owner.loaded if isinstance(owner, Running) else None
         unknown = f"/<{(node.executable or get_tail(node.plugin)) if node else 'node'}>"
         full = loaded.name if loaded is not None else (node and node.name) or unknown
@@ -789,9 +868,9 @@ class Join:
         one = generation == 1
         try:
             if one:
-                text = text.replace("{node}", full).replace("{ns}", namespace or "/")
-                if site.prefix and text[:1] not in ("/", "~"):
+                if site.prefix and text[:1] not in ("/", "~", "{"):
                     text = f"~{text}" if site.prefix == "~" else f"{site.prefix}/{text}"
+                text = text.replace("{node}", full).replace("{ns}", namespace or "/")
                 plain = name = resolve_ros1_name(text, full)
                 if loaded is not None:
                     plain = name = loaded.remap_name(text)
@@ -802,11 +881,17 @@ class Join:
                 text = _make_code_name(site, text)
                 plain = resolve_ros2_name(text, own, namespace or "/")
                 kind = "topic" if site.role in ("publisher", "subscriber") else "service"
-                name = plain if instance is None else instance.remap_name(text, 2, kind)
+                rules = owner.remaps if isinstance(owner, Running) else ()
+                name = remap_ros2_name(text, own, namespace or "/", rules, kind) if rules else plain
+                # Those of the node itself come before those that a launch gives.
+                if instance is not None and name == plain:
+                    name = instance.remap_name(text, 2, kind)
+                elif name != plain:
+                    plain = name
         except NameRefused as error:
             return "", "unresolved", str(error)
         if is_open(name) or value.how == "partly":
-            return name, "partly", ""
+            return name, "partly", value.reason
         if name != plain:
             return name, "launch", ""
         return name, "given" if site.implied and value.how == "literal" else value.how, ""
@@ -925,6 +1010,12 @@ class _Count:
             self.by_default += all(value.how == "default" for site in sites for value in site.names)
 
 
+def _note_loaded(node: Node, parts: Iterable[Running]) -> Node:
+    """A node with the plugins that it loads."""
+    loads = tuple(sorted({f"{part.program.package}/{part.program.plugin}" for part in parts}))
+    return structs.replace(node, loads=loads) if loads else node
+
+
 def _strip_given(start: Started) -> Started:
     """A start without what it gives to the node."""
     return start._replace(name=EMPTY, namespace=EMPTY, remaps=(), settings=())
@@ -935,6 +1026,8 @@ def _keep_fixed(
 ) -> tuple[Started, str]:  # fmt: skip
     """A start without what the options of the node give it all the same, and its namespace in the code. around: the
     namespace that the launch gives the program."""
+    if "all" in fixed:
+        start = _strip_given(start)
     if "name" in fixed:
         start = start._replace(name=EMPTY)
     if "namespace" in fixed:
@@ -961,8 +1054,9 @@ def _make_code_name(site: Site, text: str) -> str:
     """The name that an endpoint's code gives to ROS: private where its node handle is."""
     if text.startswith("~") and not text.startswith("~/") and len(text) > 1:
         return f"~/{text[1:]}"
-    private = site.prefix == "~" and text and text[0] not in "/~"
-    return f"~/{text}" if private else text
+    if not site.prefix or not text or text[0] in "/~{":
+        return text
+    return f"~/{text}" if site.prefix == "~" else f"{site.prefix.rstrip('/')}/{text}"
 
 
 def _join_conditions(*conditions: str) -> str:

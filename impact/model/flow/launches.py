@@ -89,8 +89,8 @@ class LaunchedNode(msgspec.Struct, frozen=True):
     uses, before remapping; parameters: those it declares or reads, in ROS 1 by their full names, or as `*/name` where
     the code does not tell the namespace. hidden, hidden_parameters: why these are not all known, and so left empty.
     uncertain: why it may have another name, or may not be started at all. refused: values that it is given and that its
-    parameters do not take. values: those that it is given, by the names of its parameters; without a type where they
-    are not known.
+    parameters do not take. reads_files: it may read its parameter files by itself, too. values: those that it is given,
+    by the names of its parameters; without a type where they are not known.
     """
 
     node: str
@@ -105,12 +105,14 @@ class LaunchedNode(msgspec.Struct, frozen=True):
     uncertain: tuple[str, ...]
     refused: tuple[RefusedValue, ...] = ()
     values: tuple[GivenValue, ...] = ()
+    reads_files: bool = False
 
 
 class Launch(msgspec.Struct, frozen=True):
     """What a launch file starts. path: in the workspace. graph: of all that it starts. missing: it starts programs too
     whose code is not in the workspace, or that are not known, or it includes what is not followed; elsewhere: the
-    lines, as `path:line`, of the remappings and parameters that those programs are given. possible: the graph of what
+    lines, as `path:line`, of the remappings and parameters that those programs are given, and told: the texts of these
+    and of their arguments. possible: the graph of what
     it starts only if conditions hold that do not with the defaults of its arguments, of programs that no launch file
     starts with these; None for nothing."""
 
@@ -120,6 +122,7 @@ class Launch(msgspec.Struct, frozen=True):
     missing: bool
     elsewhere: tuple[str, ...] = ()
     possible: Graph | None = None
+    told: tuple[str, ...] = ()
 
 
 _Followed = tuple[str, Launched]
@@ -200,7 +203,22 @@ def _start(workspace: Workspace, join: Join, followed: Sequence[_Followed]) -> I
             for given in (*started.remaps, *started.settings)
         }
         possible = launch.possible and add_bridges(join.build(launch=launch.possible), launch.possible, sources)
-        yield Launch(path, graph, tuple(starts), bool(others or missing), tuple(sorted(elsewhere)), possible)
+        told = sorted({text for one in (*others, *launch.outside) for text in _list_told(one)})
+        yield Launch(
+            path, graph, tuple(starts), bool(others or missing), tuple(sorted(elsewhere)), possible, tuple(told)
+        )
+
+
+def _list_told(started: Started) -> Iterator[str]:
+    """What a program is told by its arguments, remappings and parameters, those of its parameter files included."""
+    yield from (argument.shown for argument in started.arguments)
+    for remap in started.remaps:
+        yield from (remap.old.shown, remap.new.shown)
+    for setting in started.settings:
+        if isinstance(setting, SettingFile):
+            yield from (str(entry.value) for entry in setting.entries or ())
+        else:
+            yield setting.text.shown
 
 
 def _follow(workspace: Workspace, files: Sequence[tuple[str, str, str]]) -> list[_Followed]:
@@ -284,7 +302,7 @@ def _start_node(
         one.node.id, program, one.program.package, tuple(sorted(names)), tuple(sorted(asked)), renamed, given,
         reasons.names, reasons.parameters, instance.uncertain,
         tuple(_list_refused(join, launch, sources, one, instance, declared)),
-        tuple(_list_values(launch, sources, instance)),
+        tuple(_list_values(launch, sources, instance)), reasons.reads,
     )  # fmt: skip
 
 
@@ -431,7 +449,8 @@ def _list_names(join: Join, one: Running, instance: Instance) -> Iterator[str]:
         if site.use.fn in one.functions and join.runs(one, site.use):
             values = site.names
             if not site.implied:
-                values = join.sites.list_names(site.use, site.prefix, one.values)
+                prefix, values = join.sites.find_names(site.use, one.values)
+                site = site._replace(prefix=prefix)
             for value in values:
                 yield join.resolve_name(site, value, bare)[0]
 
@@ -446,7 +465,7 @@ def _collect_parameters(join: Join, one: Running, instance: Instance) -> set[str
             if instance.started.generation != 1:
                 found |= names
                 continue
-            prefix = LOST if one.loaded is not None else join.sites.find_prefix(use)
+            prefix = LOST if one.loaded is not None else join.sites.find_prefix(use, one.values)
             found.update(_resolve_parameter(name, prefix, instance) for name in names)
     return found
 

@@ -7,11 +7,13 @@ from functools import cached_property
 from typing import Any, NamedTuple, TypeVar
 
 from ....edges.groups import group_pairs
-from ...facts.flow import FlowCall, FlowExpr
+from ...facts.flow import FlowExpr
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_parameter, get_tail
+from .contexts import Contexts
 from .graph import Role
-from .names import join_name, normalise
+from .names import RemappingRule, join_name, normalise
+from .node_options import GivenPiece, NodeOptions
 from .types import Cls, FlowType
 from .values import NAMESPACE, FlowValues
 
@@ -22,7 +24,6 @@ _OPEN = "/<namespace>"
 _ROLES = frozenset(Role.__args__)
 # What is the node itself in its methods.
 _ITSELF = frozenset(("this", "self", "*this", "shared_from_this", "this.shared_from_this"))
-_STRINGS = frozenset(("std::string", "string"))
 # What gives what a pointer points to.
 _HANDED = frozenset(("lock", "get"))
 
@@ -32,27 +33,15 @@ class NodeObject(NamedTuple):
     classes that it is of, or the place where it is made; and `any CLASS`, for any object of a class. name: full, with
     brackets for what is not known of it. values: what expressions are worth in its code. uses: those that name it.
     fixed: `name` and `namespace` where its options give it these, whatever a launch says; `below` where that namespace
-    is below the one of another node."""
+    is below the one of another node; `all` where it takes nothing of what a launch gives. remaps: its own
+    remappings."""
 
     keys: frozenset[str]
     name: str
     values: FlowValues
     uses: tuple[FrameworkCall, ...]
     fixed: frozenset[str] = frozenset()
-
-
-class _Given(NamedTuple):
-    """What is given to a node. fn, line: where that is written; way: the call through which that function is reached,
-    by the function."""
-
-    value: FlowExpr
-    fn: Fn
-    line: int
-    way: tuple[tuple[Fn, FlowCall], ...] = ()
-
-    def list_texts(self, values: FlowValues) -> set[str | None]:
-        """What it may be, None for what is not known."""
-        return {one.text for one in values.limit_to_calls(dict(self.way)).evaluate(self.value, self.fn, self.line)}
+    remaps: tuple[RemappingRule, ...] = ()
 
 
 class NodeObjects:
@@ -61,6 +50,7 @@ class NodeObjects:
 
     def __init__(self, calls: Calls, values: FlowValues, ros: int):
         self.calls, self.code, self.values, self.ros = calls, calls.code, values, ros
+        self._contexts, self._options = Contexts(calls.code), NodeOptions(calls.code)
         # By the id() of the use, which is kept for that: the functions that it rests on, those of them that ran, and
         # the keys then.
         self._known: dict[int, tuple[FrameworkCall, list[tuple[frozenset[Fn], frozenset[Fn], frozenset[str]]]]] = {}
@@ -77,7 +67,8 @@ class NodeObjects:
                 own = self._evaluate_name(use, self.values) or f"<{get_tail(use.call.target) or 'node'}>"
                 keys = frozenset((make_key(use.fn, use.call.line),))
                 full, fixed = self.join_namespace(use, own, self.values), self.find_fixed(use, self.values)
-                found.append(NodeObject(keys, full, self.values, (use,), fixed))
+                remaps = self._options.list_remaps(use, self.values)
+                found.append(NodeObject(keys, full, self.values, (use,), fixed, remaps))
         return found
 
     @cached_property
@@ -148,57 +139,47 @@ class NodeObjects:
         # That of the framework's own class is the name; what derived classes give may be anything.
         uses = [use for one in reversed(chain) for use in by_class.get(one.key, ())]
         rows = [row for row in self.code.constructions.get(cls.key, ()) if row[0] in functions]
-        by_name: dict[tuple[str, frozenset[str]], list[Made]] = {}
+        by_name: dict[tuple[str, frozenset[str], tuple[RemappingRule, ...]], list[Made]] = {}
         for row in rows or [None]:
             values = self._limit(chain, [row] if row is not None else None)
             known = ((use, self._evaluate_name(use, values)) for use in uses)
             own = next(((use, name) for use, name in known if name), None)
             full, fixed = f"/<{get_tail(cls.name)}>", frozenset[str]()
+            remaps: tuple[RemappingRule, ...] = ()
             if own is not None:
                 # A derived class may hand the options to the one that names it.
-                telling = next((use for use in uses if self._find_remapped(use, "__ns:=") is not None), own[0])
+                telling = next((use for use in uses if self._options.find_rule(use, "__ns:=", values)), own[0])
                 full, fixed = self.join_namespace(telling, own[1], values), self.find_fixed(telling, values)
-            by_name.setdefault((full, fixed), []).extend([row] if row is not None else [])
-        for (name, fixed), made in by_name.items():
-            yield NodeObject(keys, name, self._limit(chain, made or None), tuple(uses), fixed)
+                remaps = self._options.list_remaps(telling, values)
+            by_name.setdefault((full, fixed, remaps), []).extend([row] if row is not None else [])
+        for (name, fixed, remaps), made in by_name.items():
+            yield NodeObject(keys, name, self._limit(chain, made or None), tuple(uses), fixed, remaps)
 
     def _limit(self, chain: list[Cls], rows: list[Made] | None) -> FlowValues:
         """What expressions are worth in objects of a class. chain: with its bases; rows: where those are made, None for
         anywhere."""
-        keys = {one.key for one in chain}
-        made: dict[Fn, list[Made]] = {}
-        for one in chain:
-            for fn in self.code.list_functions(one):
-                if not self.code.is_constructor(fn):
-                    continue
-                callers = ((caller, call.arguments, call.line) for caller, call in self.code.callers.get(fn, ()))
-                every = [*callers, *self.code.list_constructed(fn)]
-                inside = [row for row in every if (owner := self.code.find_owner(row[0])) and owner.key in keys]
-                if rows is not None:
-                    inside = [row for row in inside if self._may_begin(row[0], chain[0], rows)]
-                own = self.code.list_constructed(fn) if rows is None else rows
-                made[fn] = [*inside, *(row for row in own if row in every and row not in inside)]
-        return self.values.limit_to_objects(made)
-
-    def _may_begin(self, fn: Fn, cls: Cls, rows: list[Made]) -> bool:
-        """Whether a function of a class or its bases may be what makes objects at some places: of the constructors of
-        the class itself, those that are called there, or by others."""
-        owner = self.code.find_owner(fn)
-        if owner is None or owner.key != cls.key or not self.code.is_constructor(fn):
-            return True
-        made = self.code.list_constructed(fn)
-        return not made or any(row in rows for row in made) or bool(self.code.callers.get(fn))
+        return self.values.limit_to_objects(self._contexts.find_made(chain, rows))
 
     def _evaluate_name(self, use: FrameworkCall, values: FlowValues) -> str:
         """The name that a use gives, without a namespace; empty where it is not known."""
+        renamed = self._options.find_rule(use, "__node:=", values)
+        if renamed is not None:
+            texts = renamed.list_texts(values)
+            text = texts.pop() if len(texts) == 1 else None
+            return text if text and "{" not in text else ""
         found = values.evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line)
         text = found[0].text if len(found) == 1 else None
         # `_` stands for a name that options give.
         return text if text and text != "_" and "{" not in text else ""
 
+    def find_own_name(self, use: FrameworkCall, values: FlowValues) -> str | None:
+        """The name that the options of a node give it, empty where it is not known, None where they give none."""
+        renamed = self._options.find_rule(use, "__node:=", values)
+        return None if renamed is None else self._evaluate_name(use, values)
+
     def join_namespace(self, use: FrameworkCall, own: str, values: FlowValues) -> str:
         """The full name of a node by its own name and the namespace that its code gives, if any."""
-        remapped = self._find_remapped(use, "__ns:=")
+        remapped = self._options.find_rule(use, "__ns:=", values)
         if remapped is not None:
             texts = remapped.list_texts(values)
             spaces = {normalise("/" + (text or _OPEN).replace(NAMESPACE, "/")) for text in texts}
@@ -206,41 +187,20 @@ class NodeObjects:
         written = self.calls.find_argument(use, use.row.namespace) if use.row.namespace else None
         if written is None:
             return join_name("/", own)
-        texts = _Given(written, use.fn, use.call.line).list_texts(values)
+        texts = GivenPiece(written, use.fn, use.call.line).list_texts(values)
         space = texts.pop() if len(texts) == 1 else None
         return join_name(_OPEN if space is None else "/" + space.lstrip("/"), own)
 
     def find_fixed(self, use: FrameworkCall, values: FlowValues) -> frozenset[str]:
         """What the options of a node say of it, whatever a launch says, as NodeObject.fixed has it."""
-        remapped = self._find_remapped(use, "__ns:=")
-        found = {"name"} if self._find_remapped(use, "__node:=") is not None else set()
+        remapped = self._options.find_rule(use, "__ns:=", values)
+        found = {"name"} if self._options.find_rule(use, "__node:=", values) is not None else set()
+        if self._options.is_alone(use, values):
+            return frozenset(("name", "namespace", "all", *found))
         if remapped is not None:
             below = any(NAMESPACE in (one or "") for one in remapped.list_texts(values))
             found |= {"namespace", "below"} if below else {"namespace"}
         return frozenset(found)
-
-    def _find_remapped(self, use: FrameworkCall, rule: str) -> _Given | None:
-        """What the arguments among the options of a node remap to by a rule, also where a function of the code makes
-        these options; None where they have none such."""
-        for argument in use.call.arguments:
-            found = _find_rule(argument, rule)
-            if found is not None:
-                return _Given(found, use.fn, use.call.line)
-        for argument in use.call.arguments:
-            targets = self.code.list_targets(argument.text, use.fn) if argument.kind == "call" else []
-            calls = [call for call in use.fn.list_calls(argument.text) if call.arguments == argument.parts]
-            if len(targets) != 1 or not calls:
-                continue
-            target = targets[0]
-            written = [(row.guard, row.line, one) for row in target.facts.calls for one in row.arguments]
-            written += [(each.guard, each.line, each.value) for each in target.facts.assignments]
-            for guard, line, value in written:
-                found = _find_rule(value, rule)
-                if found is not None:
-                    # Whether it is given hangs on a condition.
-                    sure = found if guard < 0 else FlowExpr("other")
-                    return _Given(sure, target, line, ((target, calls[0]),))
-        return None
 
     def find_keys(self, use: FrameworkCall, functions: Set[Fn]) -> frozenset[str]:
         """What tells on which node objects a use is made where some functions run, as NodeObject.keys has it; empty
@@ -340,15 +300,3 @@ class _Trace:
 def make_key(fn: Fn, line: int) -> str:
     """The key of what is made on a line of a function."""
     return f"{fn.source.path}:{line}"
-
-
-def _find_rule(value: FlowExpr, rule: str) -> FlowExpr | None:
-    if value.kind in ("text", "join"):
-        every = value.parts or (value,)
-        pieces = [part.parts[0] if part.text in _STRINGS and len(part.parts) == 1 else part for part in every]
-        for place, piece in enumerate(pieces):
-            if piece.kind == "text" and rule in piece.text:
-                rest = FlowExpr("text", piece.text.partition(rule)[2])
-                return FlowExpr("join", "+", (rest, *pieces[place + 1 :]))
-    inner = (*value.parts, value.receiver) if value.receiver is not None else value.parts
-    return next(filter(None, (_find_rule(one, rule) for one in inner)), None)

@@ -1,6 +1,7 @@
-"""Plugins in the nodes that load them, as parameter files say.
+"""Plugins in the nodes that load them, as parameter files and launch files say.
 
-A parameter `<name>.plugin` (navigation2, MoveIt, costmaps) makes the node that has it load a class into itself. A
+A parameter `<name>.plugin` (navigation2, MoveIt, costmaps), or `plugin`, makes the node that has it load a class into
+itself; what programs of the workspace load is told by their code, see plugin_hosts.py. A
 parameter `<name>.type` of a controller manager makes it load a controller, which is a node of its own of that name, in
 the manager's namespace. Source: nav2's "Configuration Guide", ros2_control's "Controller Manager".
 """
@@ -12,11 +13,14 @@ from typing import Any, NamedTuple
 
 from msgspec import structs
 
+from ....edges.groups import group_pairs
 from ...facts.launch.parameter_files import ParameterFile
 from ..workspace import Workspace
 from .code import get_tail
 from .graph import Graph, Node
+from .launches import follow_launch_files
 from .names import get_namespace, is_open, join_name, normalise
+from .started import InWorkspace, make_instance
 
 _MANAGER = "controller_manager"
 
@@ -40,11 +44,35 @@ def list_plugin_loads(workspace: Workspace) -> dict[str, tuple[PluginLoad, ...]]
         return {}
     paths = [path for package in workspace for path in package.linked.files if path.endswith((".yaml", ".yml"))]
     found: dict[str, dict[PluginLoad, None]] = {}
+    launched = [row for row in _list_launched(workspace) if row[0] in classes]
+    given = {load.place for _, load in launched}
+    for name, load in launched:
+        found.setdefault(classes[name], {})[load] = None
     for path, file in workspace.extraction.look(paths, "flow_parameters").items():
         for name, load in _list_loads(path, file):
-            if name in classes:
+            # What a launch file gives a node is under the name that the node has there.
+            if name in classes and load.place not in given:
                 found.setdefault(classes[name], {})[load] = None
     return {name: tuple(loads) for name, loads in found.items()}
+
+
+def _list_launched(workspace: Workspace) -> Iterator[tuple[str, PluginLoad]]:
+    """What the nodes that launch files start load by their parameters, by the name that is given."""
+    sources = InWorkspace(workspace)
+    for _, launch in follow_launch_files(workspace):
+        for started in launch.started:
+            if started.generation != 2 or not started.settings:
+                continue
+            own = f"<{started.executable.shown or started.plugin.shown}>"
+            node = make_instance(launch, own, started).name
+            for name, setting in launch.collect_parameters(started, node).items():
+                *inner, last = name.split(".")
+                controller = last == "type" and bool(inner) and node.rpartition("/")[2] == _MANAGER
+                if (last == "plugin" or controller) and setting.text.value is not None:
+                    at = setting.source or setting.at
+                    place = f"{sources.find_workspace_path(at.package, at.path)}:{at.line}"
+                    full = join_name(get_namespace(node), inner[-1]) if controller else node
+                    yield setting.text.value, PluginLoad(full, place)
 
 
 def _list_loads(path: str, file: ParameterFile | None) -> Iterator[tuple[str, PluginLoad]]:
@@ -63,13 +91,16 @@ def _list_loads(path: str, file: ParameterFile | None) -> Iterator[tuple[str, Pl
 
 
 def assign_plugins(graph: Graph, loads: Mapping[str, Iterable[PluginLoad]]) -> Graph:
-    """A graph with each of its plugins in the nodes that load it, by class; those that nothing loads stay."""
-    placed = {
-        node.id: (node, tuple(loads.get(node.plugin.removeprefix("::"), ())))
-        for node in graph.nodes
-        if node.kind == "plugin" and not node.name
-    }
-    placed = {id_: row for id_, row in placed.items() if row[1]}
+    """A graph with each of its plugins in the nodes that load it, by class; those that nothing loads stay. Where its
+    code tells already that a node loads it, it is there."""
+    hosts = group_pairs((program, node.name) for node in graph.nodes for program in node.loads)
+    placed: dict[str, tuple[Node, tuple[PluginLoad, ...]]] = {}
+    for node in graph.nodes:
+        if node.kind == "plugin" and not node.name:
+            given = tuple(loads.get(node.plugin.removeprefix("::"), ()))
+            there = hosts.get(f"{node.package}/{node.plugin}", [])
+            if given or there:
+                placed[node.id] = node, tuple(one for one in given if one.node not in there)
     if not placed:
         return graph
 

@@ -16,7 +16,8 @@ class FlowValue(NamedTuple):
     """text: what it is worth, None when it is not known; reason says why then, and how is `given` where a launch file
     may say it. beside: it is not known, and holds under some condition in place of values that are. only_if: the
     condition under which it is worth that, where it is not known whether that holds. unpassed: it is given by whoever
-    calls a function, and nothing that runs does; uncalled: nothing at all does."""
+    calls a function, and nothing that runs does; uncalled: nothing at all does. shown: of what is not known, what is
+    known in part, with brackets for the rest."""
 
     text: str | None
     how: How = "literal"
@@ -25,6 +26,7 @@ class FlowValue(NamedTuple):
     only_if: str = ""
     uncalled: bool = False
     unpassed: bool = False
+    shown: str = ""
 
     def mark(self) -> FlowValue:
         """The same as one that may hold in place of others."""

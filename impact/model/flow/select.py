@@ -11,6 +11,7 @@ from msgspec import structs
 from ....edges.console import UserError
 from ....edges.groups import group_pairs
 from .graph import Endpoint, Graph, Node
+from .outside import drop_known
 
 HIDDEN = (
     "/rosout", "/rosout_agg", "/parameter_events", "/clock", "/diagnostics", "*/get_loggers", "*/set_logger_level",
@@ -74,7 +75,9 @@ def select_graph(
     if not asked:
         kept_nodes |= {""}
         kept_names |= {""}
-    return Selection(extract_part(graph, kept_nodes, kept_names), len(hidden), asked)
+    part = extract_part(graph, kept_nodes, kept_names)
+    # Of these it is not known what they talk about.
+    return Selection(structs.replace(part, outside=()) if asked else drop_known(part), len(hidden), asked)
 
 
 def select_whole_nodes(graph: Graph, *, nodes: Sequence[str] = (), packages: Sequence[str] = ()) -> Graph:

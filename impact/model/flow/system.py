@@ -77,6 +77,7 @@ def merge_launches(code: Graph, launches: Sequence[Launch]) -> Graph:
         publishes=merge("publishes"),
         timers=merge("timers"),
         parameters=merge("parameters"),
+        outside=_drop_repeats(one for graph in graphs for one in graph.outside),
     )
 
 

@@ -19,9 +19,11 @@ from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number
 from .conditions import ConditionReader, DecidedCondition, is_truth
-from .elements import Elements, ListElement
+from .elements import SETTING, Elements, ListElement, find_begun
+from .given_lists import GivenLists
 from .graph import How
-from .names import is_open, resolve_ros1_name
+from .literals import spell_number
+from .names import is_open, make_open_part, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
 from .reaching import LOOPS, FlowValue, ReachingValues
 from .types import split_name
@@ -33,8 +35,12 @@ NODE, NAMESPACE = "{node}", "{ns}"
 LOST = "?"
 """Begins the namespace of a node handle that is not known."""
 _MOST = 12
+# Of loops whose turns are looked at one by one.
+_MOST_TURNS = 64
 _DEEPEST = 12
 _FAR = 6
+# Names that are known in part, of one endpoint.
+_MOST_IN_PART = 4
 # Up to here it is asked of each value whether its branch is come to.
 _NEAR = 3
 # Expressions looked at for one value, and characters of it: each variable may be written from two others.
@@ -49,7 +55,8 @@ _MOST_KNOWN = 24
 # Calls that give what they are called on, or their first argument, as a string.
 _SAME = frozenset(
     ("c_str", "str", "as_string", "string_value", "value", "get_parameter_value", "strip", "lstrip", "rstrip", "data",
-     "get_value", "to_string", "as_int", "as_bool", "as_double", "as_string_array", "string_array_value")
+     "get_value", "string", "generic_string", "native", "to_string", "as_int", "as_bool", "as_double",
+     "as_string_array", "string_array_value")
 )  # fmt: skip
 _OF_FIRST = frozenset(("resolveName", "resolve_name", "remap_name", "resolve", "string", "str", "String", "move",
                        "forward", "ParameterValue", "expand_topic_or_service_name", "resolve_topic_name",
@@ -61,6 +68,12 @@ _STRING_METHODS = frozenset(
 _LEAST: tuple[How, ...] = ("default", "launch", "given", "literal")
 # Kinds of guards that ask something, and conditions that are a variable alone.
 ASKING = frozenset(("if", "unless", "case"))
+# The place of what a loop walks through, and what counts its turns.
+_EACH = FlowExpr("other")
+_COUNTER = "enumerate"
+WHICH_TURN = "which turn of the loop it is"
+_TOGETHER = "these parts of the name belong together"
+_MEASURES = re.compile(r"([\w.]+)\.size\(\)\Z")
 _FLAG = re.compile(r"(!|not )?\s*\(?((?:self\.|this->|this\.)?[A-Za-z_]\w*)\)?")
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _OF_PAIRS = frozenset(("first", "second"))
@@ -71,6 +84,7 @@ _NODE_NAME = frozenset(("get_name", "getName", "get_fully_qualified_name"))
 _NODE_NAMESPACE = frozenset(("get_namespace", "getNamespace"))
 
 
+_NOT_SET = FlowValue(None, "given", "a parameter that the launch does not set")
 _NOT_GIVEN = FlowValue(None, "given", "an argument of the command line that is not given")
 
 
@@ -86,19 +100,22 @@ class Work:
     particular makes; makers: who makes the others; made: all of these; is_open: whether a launch gives anything. Where
     nothing asked, made and what is true or false are None, and arguments is UNASKED. higher, lower: by how much the
     number of things that are being evaluated could be larger or smaller without another answer of those that ask for
-    it. is_alone: whether nothing else had a part in it that may be otherwise another time. way: that of whoever works
-    it out."""
+    it. turns: those of loops that were asked for, None for any; below: the settings below a prefix that were asked for.
+    is_alone: whether nothing else had a part in it that may be otherwise another time. way, chosen: the calls and the
+    turns of whoever works it out."""
 
     __slots__ = (
-        "arguments", "free", "higher", "idle", "is_alone", "is_limited", "is_open", "items", "lines", "lower", "made",
-        "makers", "runs", "settings", "unmade", "way", "ways",
+        "arguments", "below", "chosen", "free", "higher", "idle", "is_alone", "is_limited", "is_open", "items",
+        "lines", "lower", "made", "makers", "runs", "settings", "turns", "unmade", "way", "ways",
     )  # fmt: skip
 
-    def __init__(self, way: Mapping[Fn, FlowCall]):
-        self.way = way
+    def __init__(self, way: Mapping[Fn, FlowCall], chosen: Mapping[tuple[str, int], int] = {}):
+        self.way, self.chosen = way, chosen
+        self.turns: dict[tuple[str, int], int | None] = {}
         self.items: set[tuple] = set()
         self.lines: set[tuple[Fn, int]] = set()
         self.settings: dict[str, FlowValue | None] = {}
+        self.below: dict[str, dict[str, str]] = {}
         self.runs: set[Fn] = set()
         self.idle: set[Fn] = set()
         self.free: set[Fn] = set()
@@ -122,6 +139,8 @@ class Work:
         self.free |= other.free
         for fn, call in other.ways.items():
             self.note_way(fn, call)
+        for loop, turn in other.turns.items():
+            self.note_turn(loop, turn)
         self.unmade |= other.unmade
         self.makers.update(other.makers)
         if other.made is not None:
@@ -137,6 +156,7 @@ class Work:
     def note_given(self, other: Work) -> None:
         """Notes of what something else rests on what a launch gives."""
         self.settings.update(other.settings)
+        self.below.update(other.below)
         if other.arguments is not UNASKED:
             self.arguments = other.arguments
         if other.is_open is not None:
@@ -148,6 +168,11 @@ class Work:
             self.free.add(fn)
         elif self.way.get(fn) is call:
             self.ways[fn] = call
+
+    def note_turn(self, loop: tuple[str, int], turn: int | None) -> None:
+        """Notes the only turn of a loop, other than one that was chosen on the way here."""
+        if turn is None or self.chosen.get(loop) == turn:
+            self.turns[loop] = turn
 
     def note_maker(self, fn: Fn, made: Sequence[Made] | None) -> None:
         """Notes who in particular makes a function's objects."""
@@ -188,20 +213,22 @@ class FlowValues:
         within: Set[Fn] | None = None,
         node: str = "",
         made: Mapping[Fn, Sequence[Made]] | None = None,
+        turns: Mapping[tuple[str, int], int] | None = None,
     ):
         """settings: values of parameters that a launch sets, by name; in ROS 1 by the global name, and node is the full
         name of the node then. arguments: of the command line, without the program's name; None where they are not
         known. way: the only call through which a function is reached, by the function. within: the functions that run,
         all when None. made: by constructor who gives it its arguments, where that is not whoever makes an object of its
-        class."""
+        class. turns: of loops, by the place of their function and their line, the only turn that it is about."""
         self.calls, self.code = calls, calls.code
         self.settings, self.arguments, self.way, self.within = settings or {}, arguments, way or {}, within
-        self.node, self.made = node, made or {}
+        self.node, self.made, self.turns = node, made or {}, turns or {}
         # The namespace of the node handle that a use is called on, and what is known of that, by the call.
-        self.find_prefix: Callable[[FrameworkCall], str] = lambda use: ""
-        # The value of a message's constant by its path, where it is a string.
-        self.find_message_text: Callable[[str, Fn], str | None] = lambda path, fn: None
+        self.find_prefix: Callable[[FrameworkCall, FlowValues], str] = lambda use, values: ""
+        # The value of a constant of a message or a released package by its path, where it is a string.
+        self.find_outside_text: Callable[[str, Fn], str | None] = lambda path, fn: None
         self._prefixes: dict[int, str] = {}
+        self._asked_prefixes: set[int] = set()
         self._left = _MOST_STEPS
         self._budget = [_STEPS_IN_ALL + _STEPS_A_FUNCTION * len(self.code.functions)]
         # Decided guards, each with what it rests on.
@@ -218,7 +245,7 @@ class FlowValues:
         self, settings: Mapping[str, str], arguments: tuple[str, ...] | None = None, node: str = ""
     ) -> FlowValues:
         """The same code where a launch sets parameters and gives arguments; as for FlowValues()."""
-        return self._make_copy(settings, arguments, self.way, self.within, node, self.made)
+        return self._make_copy(settings, arguments, self.way, self.within, node, self.made, self.turns)
 
     def rename(self, node: str) -> FlowValues:
         """The same where the code is a nodelet of another name."""
@@ -228,17 +255,55 @@ class FlowValues:
         """The same code where only some functions run: what others pass to them does not count."""
         known = self._copies.get(id(functions))
         if known is None:
-            known = self._make_copy(self.settings, self.arguments, self.way, functions, self.node, self.made)
+            known = self._make_copy(
+                self.settings, self.arguments, self.way, functions, self.node, self.made, self.turns
+            )
             self._copies[id(functions)] = known  # which keeps the functions, so that nothing else comes by the same id
         return known
 
     def limit_to_calls(self, way: Mapping[Fn, FlowCall]) -> FlowValues:
         """The same code as far as it is reached through some calls, by the function called."""
-        return self._make_copy(self.settings, self.arguments, way, self.within, self.node, self.made) if way else self
+        if not way:
+            return self
+        return self._make_copy(self.settings, self.arguments, way, self.within, self.node, self.made, self.turns)
 
     def limit_to_objects(self, made: Mapping[Fn, Sequence[Made]]) -> FlowValues:
         """The same code in some objects alone. made: who gives their constructors arguments."""
-        return self._make_copy(self.settings, self.arguments, self.way, self.within, self.node, made)
+        return self._make_copy(self.settings, self.arguments, self.way, self.within, self.node, made, self.turns)
+
+    def limit_to_turn(self, fn: Fn, line: int, turn: int) -> FlowValues:
+        """The same code in one turn of the loop that begins on a line of a function."""
+        turns = {**self.turns, (fn.place, line): turn}
+        return self._make_copy(self.settings, self.arguments, self.way, self.within, self.node, self.made, turns)
+
+    def find_turn(self, fn: Fn, line: int) -> int | None:
+        """The only turn of the loop that begins on a line of a function, None for any."""
+        turn = self.turns.get((fn.place, line))
+        if self._works:
+            self._works[-1].note_turn((fn.place, line), turn)
+        return turn
+
+    def count_turns(self, fn: Fn, guard: int) -> int:
+        """How often the loop of a guard is gone through, 0 where that is not written out."""
+        row = fn.facts.guards[guard]
+        beside = [one for one in fn.facts.guards if one.line == row.line and one.kind in LOOPS]
+        if row.kind not in LOOPS or len(beside) > 1:
+            return 0
+        counts: list[int] = []
+        for each in fn.facts.assignments:
+            if each.line != row.line or each.operator not in ("=", "for"):
+                continue
+            container = (_find_walked(each) if each.guard == guard else None) or find_begun(each.value)
+            measured = _MEASURES.search(row.text) if each.value.kind == "number" else None
+            if measured is not None:
+                container = FlowExpr("name", measured[1])
+            elif container is None and each.value.kind == "number":
+                inside = (one.line for one in fn.facts.calls if guard in fn.list_guards_around(one.guard))
+                counts.append(len(self.elements.list_counted(each.target, fn, next(inside, row.line))))
+            if container is not None and container.text != _COUNTER:
+                counts.append(len(self.elements.list_turns(container, fn, each.line) or ()))
+        known = [count for count in counts if count]
+        return min(known, default=0)
 
     def _make_copy(self, *given) -> FlowValues:
         other = FlowValues(self.calls, *given)
@@ -247,7 +312,8 @@ class FlowValues:
         other._budget, other._decided = self._budget, self._decided
         other._known, other._works, other._asking = self._known, self._works, self._asking
         other.find_prefix, other._prefixes = self.find_prefix, self._prefixes
-        other.find_message_text = self.find_message_text
+        other._asked_prefixes = self._asked_prefixes
+        other.find_outside_text = self.find_outside_text
         return other
 
     def evaluate(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
@@ -259,7 +325,8 @@ class FlowValues:
         beside = [one for one in found if one.beside][:1]
         if known and beside:
             return [*(one._replace(how="partly") for one in known), *beside]
-        return known or found[:1] or [FlowValue(None, "unresolved", "no value is given")]
+        in_part = list({one.shown: one for one in found if one.shown}.values())
+        return known or in_part[:_MOST_IN_PART] or found[:1] or [FlowValue(None, "unresolved", "no value is given")]
 
     def find_only_text(self, value: FlowExpr, fn: Fn) -> str | None:
         """The first text that an expression may be worth, None where something unknown may be in its place."""
@@ -288,8 +355,12 @@ class FlowValues:
         if kind == "number" and value.text[:1] == "'":
             one = _read_character(value.text)
             yield FlowValue(one) if one else FlowValue(None, "unresolved", f"`{value.text}` is not followed")
-        elif kind in ("text", "number"):
+        elif kind == "number":
+            yield FlowValue(spell_number(value.text, fn.source.facts.language == "cpp"))
+        elif kind == "text":
             yield FlowValue(value.text)
+        elif kind == SETTING:
+            yield FlowValue(value.text, "launch")
         elif kind == "name":
             yield from self._evaluate_name(value.text, fn, line, seen)
         elif kind == "join":
@@ -333,13 +404,21 @@ class FlowValues:
             yield one if sure or one.how not in ("literal", "given") else one._replace(how="default")
 
     def _evaluate_join(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
+        value = _spell_boost_format(value) or value
         pieces = [_take_first(self._evaluate(part, fn, line, seen)) for part in value.parts]
+        # Of several pieces with several values each, it is not known which belong together.
+        several = [{one.text for one in piece if one.text is not None} for piece in pieces]
+        if sum(len(texts) > 1 for texts in several) > 1:
+            for piece in (piece for piece, texts in zip(pieces, several, strict=True) if len(texts) > 1):
+                piece[:] = [one._replace(only_if=_join_texts(one.only_if, _TOGETHER)) for one in piece]
         plain = value.text in ("+", "/", "%") and not any(map(_is_string, value.parts))
         for row in islice(product(*pieces), _MOST):
             # Numbers are added; of what may be either, it is not known.
             numbers = plain and all(one.text is not None and is_number(one.text) for one in row)
             counted = numbers and value.text == "+" and any(part.kind == "number" for part in value.parts)
-            if counted:
+            if any(one.text is None for one in row):
+                yield _join_in_part(row, value) if value.text in ("", "+") else _join(row)
+            elif counted:
                 joined = _join(row)
                 yield joined._replace(text=str(sum(int(one.text or "") for one in row)))
             elif numbers:
@@ -387,7 +466,7 @@ class FlowValues:
 
     def record(self, work_out: Callable[[], _Row]) -> tuple[_Row, Work]:
         """What a function gives, and on what that rests."""
-        work = Work(self.way)
+        work = Work(self.way, self.turns)
         self._works.append(work)
         try:
             return work_out(), work
@@ -463,7 +542,7 @@ class FlowValues:
     @cached_property
     def elements(self) -> Elements:
         """What lists and dictionaries of the code hold."""
-        return Elements(self.code, self._runs, self.way, self.made)
+        return Elements(self.code, self.runs, self.way, self.made, GivenLists(self).find, self.find_turn)
 
     def _evaluate_chosen(
         self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
@@ -471,6 +550,9 @@ class FlowValues:
         """What stands at a place, at a key, or in each turn of a loop."""
         if index.kind in ("number", "text"):
             found = self.elements.select(container, index, fn, line)
+        elif index.kind == "other" and not index.text and container.text == _COUNTER:
+            yield from self._evaluate_count(container, fn, line, seen)
+            return
         elif index.kind == "other" and not index.text:
             found = self.elements.list_walked(container, fn, line)
             # A loop over a dictionary goes through its keys.
@@ -489,6 +571,26 @@ class FlowValues:
         else:
             yield from self._evaluate_elements(container, fn, line, seen)
 
+    def _evaluate_count(self, container: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
+        """The number of a turn, as `enumerate` counts."""
+        turn = self.find_turn(fn, line)
+        begins = [FlowValue("0")] if not container.parts else list(self._evaluate(container.parts[0], fn, line, seen))
+        for one in begins:
+            known = turn is not None and is_number(one.text or "")
+            unknown = FlowValue(None, "unresolved", WHICH_TURN)
+            yield one._replace(text=str(int(one.text or 0) + (turn or 0))) if known else unknown
+
+    def _list_counted(self, path: str, fn: Fn, line: int) -> list[ListElement]:
+        """The numbers that a variable of a counting loop is in its turns, or in the one that is chosen."""
+        found = self.elements.list_counted(path, fn, line)
+        around = {place for guard in fn.collect_guards(line) for place in fn.list_guards_around(guard)} if found else ()
+        loops = {fn.facts.guards[place].line for place in around if fn.facts.guards[place].kind in LOOPS}
+        for each in fn.assigned.get(path, ()) if loops else ():
+            if each.operator == "=" and each.line in loops:
+                turn = self.find_turn(fn, each.line)
+                return [found[turn]] if turn is not None and turn < len(found) else found
+        return found
+
     def _select_at_each(
         self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
     ) -> list[ListElement]:  # fmt: skip
@@ -500,6 +602,8 @@ class FlowValues:
         found: list[ListElement] = []
         for key in keys:
             chosen = key.text is not None and self.elements.select(container, FlowExpr("text", key.text), fn, line)
+            if not chosen and is_number(key.text or ""):
+                chosen = self.elements.select(container, FlowExpr("number", key.text or ""), fn, line)
             if not chosen:
                 return []
             found += chosen
@@ -572,7 +676,7 @@ class FlowValues:
             yield from self._evaluate_inner(path.removesuffix("()"), fn, line, seen)
             return
         known = self.elements.find_pair(path, fn, line) if parts[-1] in _OF_PAIRS and "." in path else None
-        known = known or (self.elements.list_counted(path, fn, line) if path in fn.locals else None)
+        known = known or (self._list_counted(path, fn, line) if path in fn.locals else None)
         if known:
             for one in known:
                 yield from self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value)))
@@ -597,7 +701,7 @@ class FlowValues:
         found = list(self.evaluate_variable(variable, fn, (*seen, variable), self._find_origins(path, fn), at, line))
         if not found:
             found = list(self._evaluate_declared(path, fn, line, (*seen, variable)))
-        told = None if found else self.find_message_text(path, fn)
+        told = None if found else self.find_outside_text(path, fn)
         if found:
             yield from found
         elif told is not None:
@@ -697,7 +801,9 @@ class FlowValues:
             and (not made or rests.unmade.isdisjoint(made))
             and (not rests.makers or all(made.get(fn) == rows for fn, rows in rests.makers.items()))
             and (rests.made is None or rests.made is made)
+            and (not rests.turns or all(self.turns.get(loop) == turn for loop, turn in rests.turns.items()))
             and (rests.arguments is UNASKED or rests.arguments == self.arguments)
+            and all(self.list_settings_below(prefix) == given for prefix, given in rests.below.items())
             and (not rests.settings or all(self.find_setting(name) == v for name, v in rests.settings.items()))
         )
 
@@ -745,7 +851,7 @@ class FlowValues:
             written = [(w, each) for w, each in written if self.origins.may_be_of(each.target, w, origins)]
         if variable.kind == "member":
             # What another program writes into its own object, unless nothing that runs writes it.
-            written = [(w, each) for w, each in written if self._runs(w)] or written
+            written = [(w, each) for w, each in written if self.runs(w)] or written
         rows, given = self._select_given(written)
         own = [each for writer, each in rows if writer is fn and line]
         around = fn.list_guards_around(self._find_guard_of(fn, line, seen)) if line else ()
@@ -875,7 +981,7 @@ class FlowValues:
             # What a parameter that surely has a value is read into is worth nothing else any more.
             if any(each.line < use.call.line and each.guard == use.call.guard for use in sure):
                 continue
-            if self._decide_branch(each.guard, writer, seen).holds is not False and found.may_run(each.guard):
+            if self.decide_branch(each.guard, writer, seen).holds is not False and found.may_run(each.guard):
                 tested = found.exclude(each.guard) or tested
                 found.add(_mark_unknown(self._evaluate_written(each, writer, origins, seen)), each.guard)
         return found.list_values() if tested else _restore_alone(found.list_values())
@@ -884,24 +990,32 @@ class FlowValues:
         self, each: Assignment, fn: Fn, found: ReachingValues, origins: Origins | None, seen: tuple
     ) -> None:  # fmt: skip
         """Goes on with an assignment in the function that reads the variable later."""
-        branch = self._decide_branch(each.guard, fn, seen)
+        branch = self.decide_branch(each.guard, fn, seen)
         if branch.holds is False or not found.may_run(each.guard):
             return
         # What the launch opens surely runs.
         guard = -1 if branch.holds else each.guard
         if each.operator == "+=" and _is_string(each.value) and found.is_counted(each.guard):
             added = list(self._evaluate(each.value, fn, each.line, seen))
-            values = [_join((one.value, more)) for one in found.held[:_MOST] for more in added[:_MOST]][:_MOST]
+            whole = FlowExpr("join", "", (FlowExpr("name", each.target), each.value))
+            rows = [(one.value, more) for one in found.held[:_MOST] for more in added[:_MOST]][:_MOST]
+            values = _mark_unknown(_join_in_part(row, whole) for row in rows)
+        elif each.operator == "/=" and found.is_counted(each.guard):
+            added = list(self._evaluate(each.value, fn, each.line, seen))
+            rows = [(one.value, more) for one in found.held[:_MOST] for more in added[:_MOST]][:_MOST]
+            paths = [(row, posixpath.join(*(one.text or "" for one in row))) for row in rows]
+            joined = ((_join(row), path) for row, path in paths)
+            values = _mark_unknown(one if one.text is None else one._replace(text=path) for one, path in joined)
         elif _mentions(each.value, each.target) and not found.is_counted(each.guard):
             values = [FlowValue(None, "unresolved", f"`{each.target}` is put together in steps", beside=True)]
         else:
             values = _mark_unknown(self._evaluate_written(each, fn, origins, seen))
-        if each.operator in ("=", "+=") and "." not in each.target.removeprefix("this."):
+        if each.operator in ("=", "+=", "/=") and "." not in each.target.removeprefix("this."):
             found.assign(values, guard)
         else:
             found.add(values, guard)
 
-    def _decide_branch(self, guard: int, fn: Fn, seen: tuple) -> DecidedCondition:
+    def decide_branch(self, guard: int, fn: Fn, seen: tuple = ()) -> DecidedCondition:
         """Whether a place in a function is come to, as far as the launch decides it by parameters, or by how many
         arguments it gives; holds is None for all else, and for what is asked for by the way."""
         if guard < 0 or not self._find_asking(fn, guard):
@@ -967,6 +1081,8 @@ class FlowValues:
             yield from self._evaluate(each.value, writer, each.line, seen)
         elif each.operator == "for":
             yield from self._evaluate_elements(each.value, writer, each.line, seen)
+        elif each.operator == "/=":
+            yield FlowValue(None, "unresolved", f"`{each.target}` is put together in steps", True)
         elif each.operator == "+=":
             # What is counted has other values beside the first.
             counted = each.value.kind == "number"
@@ -1041,7 +1157,7 @@ class FlowValues:
         calls = ((caller, call.arguments, call.line) for caller, call in self.code.callers.get(fn, ())
                  if only is None or call is only)  # fmt: skip
         for caller, arguments, line in self.made.get(fn) or (*calls, *self.code.list_constructed(fn)):
-            if self._runs(caller):
+            if self.runs(caller):
                 argument = find_argument(arguments, place, parameter.name)
                 given, lacking = given or argument is not None, lacking or argument is None
                 if argument is not None:
@@ -1052,6 +1168,26 @@ class FlowValues:
         elif not given:
             reason = f"an argument of `{fn.name or 'the module'}`, which nothing here calls"
             yield FlowValue(None, "given", reason, uncalled=self.code.is_idle(fn), unpassed=True)
+
+    def list_given(self, fn: Fn, place: int, name: str) -> Iterator[tuple[FlowExpr, Fn, int]]:
+        """What those that run give for a parameter of a function, with who does and at which line."""
+        only = self.way.get(fn)
+        if self._works:
+            self._works[-1].note_way(fn, only)
+            self._works[-1].note_maker(fn, self.made.get(fn))
+        rows = [(caller, call.arguments, call.line) for caller, call in self.code.callers.get(fn, ())
+                if only is None or call is only]  # fmt: skip
+        rows += [(binder, arguments, 0) for binder, arguments in self.code.bound.get(fn, ())]
+        for giver, arguments, line in self.made.get(fn) or (*rows, *self.code.list_constructed(fn)):
+            argument = find_argument(arguments, place, name) if self.runs(giver) else None
+            if argument is not None:
+                yield argument, giver, line
+
+    def is_left_out(self, fn: Fn) -> bool:
+        """Whether a function is a constructor that makes none of the objects which these values are about."""
+        if self._works:
+            self._works[-1].note_maker(fn, self.made.get(fn))
+        return fn in self.made and self._is_made_otherwise(fn)
 
     def _find_given(self, value: FlowExpr, fn: Fn) -> tuple[int, FlowParameter] | None:
         """The parameter of a constructor that a value is, None for all else."""
@@ -1064,12 +1200,13 @@ class FlowValues:
         owner = self.code.find_owner(fn)
         place, facts = parameter
         for maker, arguments, line in self.code.constructions.get(owner.key, ()) if owner is not None else ():
-            if (maker.place, arguments) in origins.made and self._runs(maker):
+            if (maker.place, arguments) in origins.made and self.runs(maker):
                 argument = find_argument(arguments, place, facts.name) or self.code.find_default(fn, place, facts)
                 if argument is not None:
                     yield from self._evaluate(argument, maker, line, seen)
 
-    def _runs(self, fn: Fn) -> bool:
+    def runs(self, fn: Fn) -> bool:
+        """Whether a function runs, as far as it is known which do."""
         runs = self.within is None or fn in self.within
         if self._works:
             (self._works[-1].runs if runs else self._works[-1].idle).add(fn)
@@ -1091,7 +1228,7 @@ class FlowValues:
             yield from self._evaluate_string_method(value, fn, line, seen)
             return
         if head and (last in _SAME or (last == "get" and value.receiver is not None and not value.parts)):
-            if value.receiver is not None and value.receiver.kind == "call":
+            if value.receiver is not None and (value.receiver.kind == "call" or head == "()"):
                 yield from self._evaluate(value.receiver, fn, line, seen)
             elif head.endswith("()"):
                 yield from self._evaluate_inner(head.removesuffix("()"), fn, line, seen)
@@ -1127,6 +1264,9 @@ class FlowValues:
         if last == "string" and len(value.parts) > 1:
             yield FlowValue(None, "unresolved", f"what `{value.text}` makes of several values is not followed")
             return
+        if last == "path" and value.text.endswith(("filesystem::path", "fs::path")) and len(value.parts) == 1:
+            yield from self._evaluate(value.parts[0], fn, line, seen)
+            return
         if (last in _OF_FIRST or (last.startswith("create") and "Options::" in value.text)) and value.parts:
             yield from self._evaluate(value.parts[0], fn, line, seen)
             return
@@ -1134,11 +1274,19 @@ class FlowValues:
             for one in self._evaluate(value.parts[0], fn, line, seen):
                 yield one if one.text is None else one._replace(text=make_sibling(one.text, "camera_info"))
             return
+        if last == "getName" and len(value.parts) == 1 and head and self._is_loader(head, fn):
+            for one in self._evaluate(value.parts[0], fn, line, seen):
+                yield one if one.text is None else one._replace(text=re.split(r"[/:]", one.text)[-1])
+            return
         if last == "append" and len(value.parts) == 2 and "names" in value.text:
             first, second = value.parts
             yield from self._evaluate_join(FlowExpr("join", "", (first, FlowExpr("text", "/"), second)), fn, line, seen)
             return
         yield from self._evaluate_inner(value.text, fn, line, seen, value.parts)
+
+    def _is_loader(self, path: str, fn: Fn) -> bool:
+        """Whether a variable is pluginlib's loader, whose getName() strips a name of its package."""
+        return get_tail(self.code.resolve_name_type(path, fn).name) == "ClassLoader"
 
     def _evaluate_string_method(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         """What a method of a string of Python gives, and `os.path.join`."""
@@ -1230,12 +1378,26 @@ class FlowValues:
         """The name of a parameter in the namespace of the node handle that it is asked of."""
         if not self.node or name[:1] in ("/", "~"):
             return name
-        if id(use.call) not in self._prefixes:
-            self._note_others()
-            self._prefixes[id(use.call)] = LOST  # as long as it rests on itself
-            self._prefixes[id(use.call)] = self.find_prefix(use)
-        prefix = self._prefixes[id(use.call)]
+        prefix = self._find_prefix(use)
         return f"~{name}" if prefix == "~" else f"{prefix}/{name}" if prefix else name
+
+    def _find_prefix(self, use: FrameworkCall) -> str:
+        key = id(use.call)
+        if key not in self._prefixes:
+            self._note_others()
+            self._prefixes[key] = LOST  # as long as it rests on itself
+            self._prefixes[key] = self.find_prefix(use, self)
+        if not self._prefixes[key].startswith(LOST) or not (self.way or self.made):
+            return self._prefixes[key]
+        # It may be known of the objects, or the calls, that this is about.
+        self._note_others()
+        if key in self._asked_prefixes:
+            return LOST
+        self._asked_prefixes.add(key)
+        try:
+            return self.find_prefix(use, self)
+        finally:
+            self._asked_prefixes.discard(key)
 
     def find_setting(self, name: str) -> FlowValue | None:
         """What a launch sets a parameter to; None for nothing. name: in the namespace of its node handle."""
@@ -1249,6 +1411,30 @@ class FlowValues:
         else:
             given = None
         return FlowValue(given, "launch") if given is not None else None
+
+    def note_open(self) -> bool:
+        """Whether a launch gives anything, which is noted."""
+        if self._works:
+            self._works[-1].is_open = bool(self.settings or self.arguments)
+        return bool(self.settings)
+
+    def list_settings_below(self, prefix: str) -> dict[str, str]:
+        """What a launch sets below a prefix, by the rest of the name; in ROS 1 by a global prefix."""
+        head = f"{prefix}{'/' if self.node else '.'}"
+        found = {name[len(head) :]: value for name, value in self.settings.items() if name.startswith(head)}
+        if self._works:
+            self._works[-1].below[prefix] = found
+        return found
+
+    def read_server(self, name: str, use: FrameworkCall) -> tuple[str | None, dict[str, str]]:
+        """What the parameter server of ROS 1 has under the name that a use gives a parameter: a value, or what is below
+        it."""
+        setting = self._make_setting_name(name, use)
+        if not self.node or setting.startswith(LOST):
+            return None, {}
+        given = self._find_setting_of(use, name)
+        below = self.list_settings_below(resolve_ros1_name(setting, self.node))
+        return given.text if given is not None else None, below
 
     def _find_parameter_name(self, use: FrameworkCall, seen: tuple) -> str:
         """The name that a use gives a parameter, empty where it is not known."""
@@ -1264,8 +1450,19 @@ class FlowValues:
             self._works[-1].settings[setting] = given
         return given
 
+    def _list_given_names(self, use: FrameworkCall, seen: tuple) -> list[FlowValue]:
+        """The names that a use gives a parameter, where a launch tells them and sets each of these parameters."""
+        written = self.calls.find_argument(use, use.row.topic)
+        found = list(self._evaluate(written, use.fn, use.call.line, seen)) if written is not None else []
+        told = len(found) > 1 and all(one.how == "launch" and one.text for one in found)
+        return [self._find_setting_of(use, one.text or "") or _NOT_SET for one in found] if told else []
+
     def _evaluate_parameter(self, use: FrameworkCall, seen: tuple) -> Iterator[FlowValue]:
         """The default of the parameter that a use declares or reads."""
+        several = self._list_given_names(use, seen)
+        if several:
+            yield from several
+            return
         name = self._find_parameter_name(use, seen)
         given = self._find_setting_of(use, name)
         if given is not None:
@@ -1298,7 +1495,7 @@ class FlowValues:
         """The uses in functions that run, where it is known which do."""
         if self._works:
             self._works[-1].is_limited = self.within is not None
-        return [use for use in uses if self._runs(use.fn)] if self.within is not None else []
+        return [use for use in uses if self.runs(use.fn)] if self.within is not None else []
 
     @cached_property
     def declared(self) -> dict[str, list[FrameworkCall]]:
@@ -1311,6 +1508,10 @@ class FlowValues:
             if name is not None and name.kind == "text":
                 found.setdefault(name.text, []).append(use)
         return found
+
+    def list_filling(self, variable: Variable) -> list[FrameworkCall]:
+        """The calls that fill a variable with the value of a parameter."""
+        return self.filled.get(variable, [])
 
     @cached_property
     def filled(self) -> dict[Variable, list[FrameworkCall]]:
@@ -1328,6 +1529,33 @@ def make_sibling(topic: str, name: str) -> str:
     """A name in the namespace of a topic (image_transport puts camera_info beside the image)."""
     head, slash, _ = topic.rpartition("/")
     return f"{head}{slash}{name}"
+
+
+def _join_in_part(row: tuple[FlowValue, ...], value: FlowExpr) -> FlowValue:
+    """A text that is put together, known in part where a piece of it is not known. value: the expression."""
+    joined = _join(row)
+    if joined.text is not None:
+        return joined
+    parts = zip(row, value.parts, strict=True)
+    shown = "".join(
+        one.text if one.text is not None else one.shown or make_open_part(f"<{_label(part)}>") for one, part in parts
+    )
+    known = _WORD_OR_NUMBER.search(_BRACKETS.sub("", shown)) and len(shown) < _LONGEST_IN_PART and "{" not in shown
+    # What begins with something unknown may be in any namespace.
+    return joined._replace(shown=shown if known and shown[0] != "<" else "")
+
+
+def _label(value: FlowExpr) -> str:
+    """A short name for what is not known."""
+    while value.kind in ("call", "make", "keyword") and len(value.parts) == 1:
+        value = value.parts[0]
+    if value.kind == "index" and value.parts:
+        return _label(value.parts[0])
+    return get_tail(value.text.replace("[]", "").rstrip("().")) or "..."
+
+
+def _join_texts(*texts: str) -> str:
+    return " && ".join(dict.fromkeys(filter(None, texts)))
 
 
 def _join(row: tuple[FlowValue, ...]) -> FlowValue:
@@ -1356,7 +1584,7 @@ def _get_key(value: FlowExpr) -> FlowExpr:
 
 def _mentions(value: FlowExpr, path: str) -> bool:
     """Whether an expression has a path in it."""
-    named = value.text == path or value.text.startswith(f"{path}.")
+    named = value.kind != "text" and (value.text == path or value.text.startswith(f"{path}."))
     inner = (*value.parts, *((value.receiver,) if value.receiver is not None else ()))
     return named or any(_mentions(part, path) for part in inner)
 
@@ -1380,6 +1608,43 @@ def _is_string(value: FlowExpr) -> bool:
     return written or (value.kind == "join" and (not value.text or any(map(_is_string, value.parts))))
 
 
+_BOOST = re.compile(r"%(?:(?P<place>[1-9])%|\|(?P<barred>[1-9])\$[sd]?\||(?P<next>[sd])|(?P<itself>%))")
+
+
+def _spell_boost_format(value: FlowExpr) -> FlowExpr | None:
+    """`boost::format("/a%1%/%s") % b % c` as a text that is put together; None for all else, and for other formats."""
+    if value.text != "%":
+        return None
+    given: list[FlowExpr] = []
+    while value.kind == "join" and value.text == "%" and value.parts:
+        given[:0] = value.parts[1:]
+        value = value.parts[0]
+    written = value.parts[0] if value.parts else None
+    if value.kind not in ("call", "make") or get_tail(value.text) != "format" or len(value.parts) != 1:
+        return None
+    if written is None or written.kind != "text":
+        return None
+    pieces: list[FlowExpr] = []
+    at = number = 0
+    for found in _BOOST.finditer(written.text):
+        pieces.append(FlowExpr("text", written.text[at : found.start()]))
+        at = found.end()
+        if found["itself"]:
+            pieces.append(FlowExpr("text", "%"))
+            continue
+        place = int(found["place"] or found["barred"] or 0) - 1 if not found["next"] else number
+        number += bool(found["next"])
+        if place >= len(given):
+            return None
+        pieces.append(given[place])
+    pieces.append(FlowExpr("text", written.text[at:]))
+    plain = "%" not in "".join(one.text for one in pieces[::2])
+    return FlowExpr("join", "", tuple(one for one in pieces if one.kind != "text" or one.text)) if plain else None
+
+
+_WORD_OR_NUMBER = re.compile(r"\w")
+_BRACKETS = re.compile(r"<[^<>]*>")
+_LONGEST_IN_PART = 200
 _COUNTED = re.compile(r"0?[0-9]{0,2}d?")
 
 
@@ -1436,6 +1701,15 @@ def _list_turns(rows: Iterable[Assignment], fn: Fn, line: int, around: Sequence[
 def _begins_turn(each: Assignment, fn: Fn) -> bool:
     guard = fn.facts.guards[each.guard]
     return guard.kind == "for" and guard.line == each.line
+
+
+def _find_walked(each: Assignment) -> FlowExpr | None:
+    """What the loop walks through of which an assignment begins the turns; None for all else."""
+    value = each.value
+    if value.kind == "index" and len(value.parts) == 2 and value.parts[1] != _EACH:
+        value = value.parts[0]
+    walks = value.kind == "index" and len(value.parts) == 2 and value.parts[1] == _EACH
+    return value.parts[0] if walks else None
 
 
 def _is_declared_on(each: Assignment, line: int) -> bool:

@@ -63,6 +63,7 @@ def _build_data(selection: Selection, base: Graph | None, context: PageContext) 
             _build_edge(edge) | {"node": places.get(edge.node, -1), "name": named[edge.kind, edge.name]}
             for edge in found
         ],
+        "outside": msgspec.to_builtins(graph.outside),
         "coverage": msgspec.to_builtins(graph.coverage),
     }
 

@@ -7,7 +7,7 @@ import msgspec
 from ....edges.console import format_json
 from ....edges.version import __version__
 from ...model.flow.connections import list_edges
-from ...model.flow.graph import Coverage, Endpoint, Graph, Node, ParameterUse, Publish, Timer
+from ...model.flow.graph import Coverage, Endpoint, Graph, Node, OutsideNode, ParameterUse, Publish, Timer
 from ...model.flow.select import Selection, group_endpoints
 from ..schemas import SCHEMA, STABLE, generate_schema
 
@@ -41,6 +41,7 @@ def render(selection: Selection, base: Graph | None) -> str:
     found["publishes"] = msgspec.to_builtins(graph.publishes)
     found["timers"] = msgspec.to_builtins(graph.timers)
     found["parameters"] = msgspec.to_builtins(graph.parameters)
+    found["possible_nodes"] = msgspec.to_builtins(graph.outside)
     found["coverage"] = msgspec.to_builtins(graph.coverage)
     if base is not None:
         found["base"] = base.rev
@@ -55,8 +56,8 @@ def render(selection: Selection, base: Graph | None) -> str:
 
 def render_schema() -> str:
     """The JSON schema (draft 2020-12) of what render() gives; docs/graph.schema.json holds it."""
-    kinds = [Node, Endpoint, Publish, Timer, ParameterUse, Coverage]
-    (node, endpoint, publish, timer, parameter, coverage), parts = msgspec.json.schema_components(
+    kinds = [Node, Endpoint, Publish, Timer, ParameterUse, OutsideNode, Coverage]
+    (node, endpoint, publish, timer, parameter, outside, coverage), parts = msgspec.json.schema_components(
         kinds, ref_template="#/$defs/{name}"
     )
     parts["Endpoint"]["properties"].pop("role")
@@ -75,6 +76,7 @@ def render_schema() -> str:
         "publishes": {"type": "array", "items": publish},
         "timers": {"type": "array", "items": timer},
         "parameters": {"type": "array", "items": parameter},
+        "possible_nodes": {"type": "array", "items": outside},
         "coverage": coverage,
     }
     parts["Name"] = {

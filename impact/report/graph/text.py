@@ -5,7 +5,7 @@ from operator import itemgetter
 
 from ....edges.console import format_count
 from ...model.flow.connections import Edge, list_conditions, list_edges, name_nodes
-from ...model.flow.graph import Coverage, Endpoint, Graph, Publish, Unresolved, Way
+from ...model.flow.graph import Coverage, Endpoint, Graph, OutsideNode, Publish, Unresolved, Way
 from ...model.flow.select import Selection
 from ..columns import UNBROKEN, LinePart, lay_out
 from ..style import PLAIN, Style
@@ -44,6 +44,7 @@ def render(selection: Selection, base: Graph | None, everything: bool = False, s
             said = f"{format_count(len(which), 'node')} {what}: {', '.join(sorted(which))}"
             lines += [*lay_out([LinePart(said)], style, 0, 2), ""]
     lines += _render_uncertain(graph, names, everything, style)
+    lines += _render_outside(graph, everything, style)
     near = graph.coverage.unresolved
     if selection.asked and not everything:
         paths = {each.path for each in (*graph.endpoints, *graph.publishes)}
@@ -62,6 +63,28 @@ def _render_uncertain(graph: Graph, names: Mapping[str, str], everything: bool, 
     shown = sorted(why.items())
     for name, reasons in shown if everything else shown[:_SHOWN]:
         yield from lay_out([LinePart(f"{name}: {reasons}")], style, 2, 4)
+    if not everything and len(shown) > _SHOWN:
+        yield from lay_out([LinePart(f"and {len(shown) - _SHOWN:,} more; --all lists them")], style, 2, _HANG)
+    yield ""
+
+
+def _render_outside(graph: Graph, everything: bool, style: Style) -> Iterator[str]:
+    """What launch files start whose code is not here."""
+    if not graph.outside:
+        return
+    said = f"{format_count(len(graph.outside), 'possible node')}, started by launch files, whose code is not here:"
+    yield from lay_out([LinePart(said)], style, 0, 2)
+    rows: dict[tuple[str, ...], OutsideNode] = {}
+    for one in graph.outside:
+        rows.setdefault((one.name, one.package, one.executable), one)
+    shown = sorted(rows.items())
+    for (name, package, executable), one in shown if everything else shown[:_SHOWN]:
+        what = f"{name or 'any of'}  {package or '(no package)'}/{executable}"
+        beside = [f"uses {', '.join(one.names)}"] if one.names else []
+        beside += [f"only if {'; '.join(one.uncertain)}"] if one.uncertain else []
+        line = [LinePart(what), LinePart("", path=one.started)]
+        line += [LinePart(f"[{'; '.join(beside)}]", "dim")] if beside else []
+        yield from lay_out(line, style, 2, 4)
     if not everything and len(shown) > _SHOWN:
         yield from lay_out([LinePart(f"and {len(shown) - _SHOWN:,} more; --all lists them")], style, 2, _HANG)
     yield ""

@@ -38,7 +38,7 @@ from collections.abc import Iterator
 from ....edges.console import format_count
 from ...model.package import NameUse
 from ...model.standards import find_failing_standard
-from ...targets.changes import find_function, find_standards, shows_no_type
+from ...targets.changes import find_function, find_standards, shows_no_class, shows_no_type
 from ...targets.symbol import Availability
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, list_place_doubts, rate_upcoming, rule
 from .diagnosis import UPSTREAM, build_data, diagnose
@@ -128,7 +128,8 @@ def _list_reviewed(view: TargetView, package: Package) -> Iterator[Diagnostic | 
             or (found.horizon is not None and not view.is_active_on(found.horizon, use.conditions))
         ):
             continue
-        if not found.earlier and not found.detail and _may_be_of_another(view, package, use, found.package):
+        of_another = _may_be_of_another(view, package, use, found.package)
+        if of_another and not found.earlier and not found.detail:
             continue
         standard = find_failing_standard(view, package, use, *find_standards(use.text))
         if standard is None:
@@ -137,6 +138,12 @@ def _list_reviewed(view: TargetView, package: Package) -> Iterator[Diagnostic | 
         doubts = list_place_doubts(view, use.role, use.conditions)
         doubts = doubts if use.language == "cpp" else (*doubts, Doubt.LATE)
         doubts = (*doubts, Doubt.AMBIGUOUS) if shows_no_type(use.text) else doubts
+        if shows_no_class(use.text):
+            doubts = (
+                *doubts,
+                not of_another or Doubt.AMBIGUOUS,
+                not _has_unread_classes(view, package) or Doubt.INCOMPLETE,
+            )
         doubts = (*doubts, Doubt.GUARDED) if view.is_included_under_conditions(package, found.package) else doubts
         doubts = (*doubts, Doubt.LATE) if found.detail else doubts
         data = {**build_data(found), "standard": standard, "advice": found.replacement, "clause": found.detail}
@@ -155,3 +162,10 @@ def _may_be_of_another(view: TargetView, package: Package, use: NameUse, owner: 
         return False
     offers = (view.offers.find_package(name) for name in view.collect_declared(package) if name != owner)
     return any(offer.history.has_declared(function) for offer in offers if offer is not None)
+
+
+def _has_unread_classes(view: TargetView, package: Package) -> bool:
+    """Whether a package is built with another whose classes nobody has read, so that an object may be of one of them
+    and have a method of its own."""
+    unread = view.unknown_contents
+    return bool(unread.list_unread(package)) or unread.may_come_along(package)

@@ -105,11 +105,16 @@ def diagnose(
 
 
 def find_gone_package(
-    view: TargetView, package: Package, use: ReferenceUse, upstream: str, subject: str
+    view: TargetView,
+    package: Package,
+    use: ReferenceUse,
+    upstream: str,
+    subject: str,
+    reached: Doubt | bool = Doubt.LATE,
 ) -> Iterator[Diagnostic]:
     """Reports that a launch file or parameter file names something of a package that the target does not have, where
-    no other rule does: package.xml does not declare it. Not in tests, and not in ROS 1, whose releases contain many
-    launch files that are no longer used."""
+    no other rule does: package.xml does not declare it. reached: True where it is asked for in every run. Not in tests,
+    and not in ROS 1, whose releases contain many launch files that are no longer used."""
     if view.target.ros == 1 or use.role == "test":
         return
     if not view.is_package(upstream) or view.may_have(upstream):
@@ -127,7 +132,7 @@ def find_gone_package(
             "upstream": upstream, "distro": view.target.distro, "replacement": view.find_successor(upstream),
             "last": last if found.state == "removed" and last != view.target.distro else "",
         }  # fmt: skip
-        doubts = (*list_place_doubts(view, use.role), Doubt.LATE)
+        doubts = (*list_place_doubts(view, use.role), reached)
         yield Diagnostic(
             use.at, subject, package.name, data, "package", doubts, together=make_version_together(upstream)
         )  # fmt: skip

@@ -10,9 +10,10 @@ Why it breaks
     pluginlib finds no class of that name, so the node that asks for it does not start.
 
 Severity
-    error for components and nodelets that a launch file loads in every run; warning for what parameter files and robot
-    descriptions name, since which of them is used is not known, under a condition, for tests, and where something about
-    the target's version is guessed; note in examples.
+    error for components and nodelets that a launch file loads in every run, and for plugins in robot descriptions
+    (`<ros2_control>`) that a launch file reads in every run and gives to what loads them; warning for what parameter
+    files and other robot descriptions name, since which of them is used is not known, under a condition, for tests, for
+    names that no version has, and where something about the target's version is guessed; note in examples.
 
 Example
     plugin: "nav2_behaviors/Spin"               # Humble and Iron
@@ -31,6 +32,7 @@ import re
 from ....edges.memory import cache_in_derived
 from ...model.package import ReferenceUse
 from ...model.python.programs import has_unknown_commands
+from ...model.read_plugins import find_read_plugins
 from ...model.settings import get_plugin_package
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
 from .diagnosis import (
@@ -63,8 +65,8 @@ def removed_plugin(view: TargetView, package: Package):
             continue
         if is_of_another_distro(view, use.at.path, files):
             continue
-        loaded = bool(use.reference.package) and not use.reference.conditional
         head = use.reference.package or get_plugin_package(name)
+        loaded = bool(use.reference.package) and not use.reference.conditional
         known = declared.get(head, set())
         if known:
             owner = view.workspace.packages[head]
@@ -86,13 +88,29 @@ def removed_plugin(view: TargetView, package: Package):
                 yield Diagnostic(use.at, name, package.name, data, kind, doubts)
             continue
         found = find_missing(view, "plugin", name, _list_candidates(view, package, use))
+        if found is not None and view.may_have(found.package):
+            continue  # in another version, which was not read
+        loaded = loaded or _is_read(view, use, head if found is None else found.package)
         if found is None:
-            yield from find_gone_package(view, package, use, head, name)
+            yield from find_gone_package(view, package, use, head, name, loaded or Doubt.LATE)
             continue
         other = _find_respelling(view, found.package, name)
         doubts = (*list_place_doubts(view, use.role), loaded or Doubt.LATE, use.role != "test" or Doubt.TEST)
         found = found._replace(replacement=other, moved_to="") if other else found
+        if found.form == "never" and not found.alike and found.package not in view.build_environment(package):
+            doubts = (*doubts, Doubt.PRIVATE)
         yield diagnose(found, use.at, name, package.name, doubts)
+
+
+def _is_read(view: TargetView, use: ReferenceUse, owner: str) -> bool:
+    """Whether a launch file has a description read in every run that names a plugin of a package, and starts what loads
+    plugins of its base class: that brings pluginlib, and the package of the class."""
+    started = find_read_plugins(view).get((use.at.path, use.at.line, use.at.column))
+    history = view.offers.find_history(owner) if started else None
+    plugins = history.list_all_plugins() if history is not None else ()
+    bases = {plugin.base.partition("::")[0] for plugin in plugins if use.reference.name in (plugin.name, plugin.type)}
+    loaders = [view.list_installed_with(one) for one in started or ()]
+    return any("pluginlib" in loader and not bases.isdisjoint(loader) for loader in loaders)
 
 
 # A file that Gazebo or Ignition loads.

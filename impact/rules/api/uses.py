@@ -9,6 +9,7 @@ from ...model.python.api import list_packages
 from ...targets.changes import find_function
 from ...targets.surface.overrides import extract_class, says_override
 from ...targets.symbol import Availability, CppUseForm, Symbol
+from ..python_files import list_python_doubts
 from ..vocabulary import At, Doubt, Package, TargetView, list_place_doubts
 
 
@@ -115,7 +116,7 @@ def list_python_uses(view: TargetView, package: Package) -> Iterable[UnservedUse
         if reviewed is not None and found.symbol.name == reviewed.symbol.name and not found.replacement:
             found = found._replace(replacement=reviewed.replacement)
         keywords = use.given.keywords if use.given is not None else ()
-        doubts = _collect_python_doubts(view, one, found)
+        doubts = _collect_python_doubts(view, package, one, found)
         for at in (one.at, *(At(one.at.path, *place) for place in use.more)):
             if (at.path, at.line) not in patterns:
                 yield UnservedUse(at, found.symbol.name, found, doubts, keywords=keywords)
@@ -127,8 +128,10 @@ def _find_reviewed(view: TargetView, kind: str, names: Iterable[str]) -> Availab
     return next((row for row in rows if row.state != "upcoming"), None)
 
 
-def _collect_python_doubts(view: TargetView, one: PythonApiUse, found: Availability) -> tuple[Doubt, ...]:
-    doubts = list_place_doubts(view, one.role)
+def _collect_python_doubts(
+    view: TargetView, package: Package, one: PythonApiUse, found: Availability
+) -> tuple[Doubt, ...]:
+    doubts = list_python_doubts(view, package, one.role, one.at.path)
     if one.role == "test":
         doubts = (*doubts, Doubt.TEST)  # nobody waits for it, whatever the build makes of it
     if one.use.lazy:

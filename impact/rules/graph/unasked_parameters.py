@@ -22,7 +22,7 @@ def find_unasked(workspace: Workspace) -> Iterator[Diagnostic]:
     kind is `namespace` where a node of ROS 1 reads one of the same name elsewhere, which is `read` then."""
     settings = group_by_line(workspace, lambda start: start.given, lambda parameter: parameter.name)
     for (path, line, name), rows in settings:
-        if any(_asks(start, name, workspace.ros) for start, _ in rows):
+        if any(_asks(start, name, path, workspace.ros) for start, _ in rows):
             continue
         start, _ = rows[0]
         last = find_last_part(name)
@@ -35,8 +35,10 @@ def find_unasked(workspace: Workspace) -> Iterator[Diagnostic]:
         yield Diagnostic(At(path, line), name, start.package, data, "namespace" if elsewhere else "")
 
 
-def _asks(start: LaunchedNode, name: str, ros: int) -> bool:
-    """Whether a node may ask for a parameter."""
+def _asks(start: LaunchedNode, name: str, path: str, ros: int) -> bool:
+    """Whether a node may ask for a parameter. path: of the file that sets it."""
+    if start.reads_files and path.endswith((".yaml", ".yml")):
+        return True
     parts = name.replace("/", ".").split(".")
     if start.hidden_parameters or parts[-1] in _COMMON or parts[0] in _COMMON_HEADS:
         return True

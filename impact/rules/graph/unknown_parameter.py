@@ -18,8 +18,8 @@ Use instead
 
 Not reported
     Nodes that ask for parameters by prefix or by names that are not known, load plugins, or pass themselves to code
-    outside of the workspace; values in a file's `/**`, which is for every node; misspellings of a parameter of the node
-    (misspelt-parameter).
+    outside of the workspace; files of parameters where the node reads files of YAML by itself; values in a file's
+    `/**`, which is for every node; misspellings of a parameter of the node (misspelt-parameter).
 """
 
 from ....edges.groups import group_pairs

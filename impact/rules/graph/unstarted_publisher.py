@@ -17,7 +17,8 @@ Use instead
     Subscribe to the name that is published, or start the other publisher.
 
 Not reported
-    Topics that a publisher whose name is not known may publish; names that are close to several.
+    Topics that a publisher whose name is not known may publish; what the reader itself publishes; names that are close
+    to several.
 """
 
 from ...model.flow.edges import build_system_flow, get_label
@@ -52,7 +53,8 @@ def unstarted_publisher(workspace: Workspace):
             "publisher", flow.find_type(one), one.topic, typed=True
         ):
             continue
-        near = {each.endpoint.topic: each for each in unread if differs_in_words(one.topic, each.endpoint.topic)}
+        others = (each for each in unread if each.node.id != taker.node.id)
+        near = {each.endpoint.topic: each for each in others if differs_in_words(one.topic, each.endpoint.topic)}
         if len(near) == 1:
             reported.add(place)
             (other,) = near.values()

@@ -5,11 +5,14 @@ the build farm, which builds packages one by one, or a fresh container after ros
 of the workspace bring.
 """
 
+import posixpath
 import re
 
 from ...model.package import find_folder_role, is_called_example
 from ..vocabulary import Doubt, Need, Package, TargetView
+from .data_files import list_copied
 from .dependants import list_compiled_elsewhere
+from .install_rules import LAUNCH_FILE, is_installed, list_references, may_stay_behind, read_installs
 
 ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program", "environment"))
 """How CMake asks for something, so that the configuration stops without it."""
@@ -91,6 +94,8 @@ def _collect_run_time_doubts(view: TargetView, package: Package, need: Need, nam
     and who wants both has it; who tries an example out sees what it lacks."""
     if is_called_example(need.at.path):
         return (Doubt.EXAMPLE,)
+    if need.how == "import" and need.role == "run" and may_stay_behind(view, package, need.at.path):
+        return (Doubt.UNINSTALLED,)
     # A launch file that is called like a test, and does not lie among tests, may be started by hand.
     folder = package.strip_path(need.at.path).rpartition("/")[0]
     by_hand = need.role == "run" or (need.role == "test" and find_folder_role(f"{folder}/") is None)
@@ -107,7 +112,35 @@ def _collect_run_time_doubts(view: TargetView, package: Package, need: Need, nam
     started = need.role == "run" or (need.role == "test" and need.at.path.endswith((".py", ".test")))
     if not wanted or (need.how in _STARTED and not started):
         return (Doubt.DISPENSABLE,)
-    return (Doubt.LATE,)
+    if view.target.ros == 1 or not view.is_available(name) or not _is_reached(view, package, need):
+        return (Doubt.LATE,)
+    # A fresh container has what all packages of the workspace bring, and whoever starts something its command.
+    if view.is_met(need.providers, view.brought_to_workspace) or name in view.list_transitive(["ros2run"]):
+        return (Doubt.LUCKY,)
+    return _collect_unknown_doubts(view, package, need, name)
+
+
+def _is_reached(view: TargetView, package: Package, need: Need) -> bool:
+    """Whether a need is met whenever something that the package installs is started: an installed launch file that
+    starts it in any case, or a program in Python that imports it in any case."""
+    path = need.at.path
+    if need.role != "run" or not need.required or need.how not in ("import", "launch"):
+        return False
+    installs = read_installs(view, package)
+    installs = (list_copied(package) if installs is None else installs) or []
+    if need.how == "launch":
+        installed = is_installed(installs, path) and not may_stay_behind(view, package, path)
+        return installed and LAUNCH_FILE.search(path) is not None
+    of_programs = (rule for rule in installs if rule.kind == "programs" or rule.destination.startswith("lib/"))
+    return (
+        posixpath.basename(path) in list_references(view, package, "executable")
+        or (is_installed(of_programs, path) and not may_stay_behind(view, package, path))
+        or any(
+            path in file.list_module_paths(posixpath.dirname(setup), module)
+            for setup, file in package.linked.setup
+            for _, module, *_ in file.entry_points
+        )
+    )
 
 
 def _collect_include_doubts(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
@@ -137,7 +170,7 @@ def _collect_unknown_doubts(view: TargetView, package: Package, need: Need, name
     if any(debian and not any(map(_LIBRARY.search, debian)) for debian in map(view.list_debs, opaque)):
         return (Doubt.DISPENSABLE,)
     include = need.how == "include" and need.providers[0].kind == "system"
-    bundling = view.unknown_contents.list_unstored(package) if include else ()
+    bundling = view.unknown_contents.list_unread(package) if include else ()
     if opaque or bundling or view.unknown_contents.may_come_along(package, name, need.providers):
         return (Doubt.INCOMPLETE,)
     together = need.role == "test" and not view.roles.farm_makes_tests

@@ -57,5 +57,5 @@ def dependency_by_chance(view: TargetView, package: Package):
                 find_kind(first, _ELSEWHERE if elsewhere else ""),
                 doubts=collect_chance_doubts(view, package, first),
                 fix=declare_need(view, package, first, name),
-                together=(Together("by chance"),),
+                together=(Together("by chance"), Together(f"`{name}` comes by chance", everywhere=True)),
             )

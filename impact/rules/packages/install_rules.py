@@ -1,12 +1,16 @@
 """The install rules of packages, as the rules on them ask for it."""
 
 import posixpath
+import re
 from collections.abc import Iterable, Iterator
 
 from ....edges.memory import cache_in_derived
 from ...model.cmake.build import Install
 from ...model.cmake.installed import lets_in, list_copied_files
 from ..vocabulary import At, Package, TargetView
+
+LAUNCH_FILE = re.compile(r"[._]launch\.(?:py|xml|ya?ml)\Z")
+"""Launch files of ROS 2, which `ros2 launch` finds in the share folder alone."""
 
 
 def read_installs(view: TargetView, package: Package) -> list[Install] | None:
@@ -43,6 +47,18 @@ def is_installed(installs: Iterable[Install], path: str) -> bool:
             if install.kind == "python" and (path.startswith(item + "/") or not item):
                 return True
     return False
+
+
+def may_stay_behind(view: TargetView, package: Package, path: str) -> bool:
+    """Whether a Python file counts as installed only since install rules take what is not known: a variable that
+    nothing sets may name it, or not. What a launch file or script starts is there."""
+    installs = [rule for rule in package.build.installs if view.applies(rule.conditions)]
+    known = [rule for rule in installs if not any("$" in item for item in rule.items)]
+    inside = package.strip_path(path)
+    by_setup = package.build_type == "catkin" and inside.startswith("src/") and package.has_files("setup.py")
+    if len(known) == len(installs) or by_setup or is_installed(known, path):
+        return False
+    return posixpath.basename(path) not in list_references(view, package, "executable")
 
 
 def list_places(package: Package, installs: Iterable[Install]) -> frozenset[str] | None:

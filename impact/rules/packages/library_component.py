@@ -1,8 +1,9 @@
 """library-component: a component of a library is asked for and gone on a platform.
 
 What it does
-    Compares the components given to find_package(Boost|Qt5|Qt6|VTK|OpenCV|PCL ... COMPONENTS) with what the target's
-    version of the library has, also in the CMake files that dependants run.
+    Compares the components given to find_package(Boost|Qt5|Qt6|VTK|OpenCV|PCL|gz-*|ignition-* ... COMPONENTS) with
+    what the target's version of the library has, also in the CMake files that dependants run. Those of VTK 9 are what
+    its configuration in Debian lists, those of Gazebo's libraries what some release of the major version adds.
 
 Why it breaks
     CMake stops at a component that is gone (`signals` since Boost 1.69), or not there yet (`json` before 1.75).
@@ -28,7 +29,7 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming,
 
 @rule(
     texts={
-        "gone": Text("{library} {version} has no component `{subject}`", "{advice}"),
+        "gone": Text("{library}[[ {version}]] has no component `{subject}`", "{advice}"),
         "upcoming": Text("`{subject}` will be removed: not in {library} {version} ({horizon})", "{advice}"),
     },
 )
@@ -43,6 +44,8 @@ def _list_gone(
 ) -> Iterator[Diagnostic | Upcoming]:
     """Components that the target's version of the library, or that of the newest distro, does not have."""
     certain = view.is_sure(found.conditions)
+    if found.name in view.workspace.packages or view.workspace.find_modules.get(found.name):
+        return
     for name, at in found.components:
         known = view.find_availability(Symbol("component", name, (found.name,)))
         data = {"library": found.name, "version": known.version, "advice": known.detail}

@@ -28,9 +28,10 @@ from collections.abc import Collection, Iterator
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .unlisted_field_package import find_field_owner
 
-_ONCE = (Together("not exported"),)
 # What the generated headers of a package include.
 _RUNTIME = "message_runtime"
+_ONCE = (Together("not exported"),)
+_RUNTIME_ONCE = (*_ONCE, Together(f"{_RUNTIME} is not exported", everywhere=True))
 
 
 @rule(
@@ -69,7 +70,7 @@ def _list_of_messages(view: TargetView, package: Package):
     reach = view.roles.list_found_with(named)
     made = next((g for g in package.build.generated if g.how == "catkin" and g.offered and g.files), None)
     if made is not None and _RUNTIME not in reach and view.is_sure(made.conditions):
-        yield Diagnostic(package.build.catkin_package, _RUNTIME, package.name, kind="runtime", together=_ONCE)
+        yield Diagnostic(package.build.catkin_package, _RUNTIME, package.name, kind="runtime", together=_RUNTIME_ONCE)
     for made in package.build.generated:
         if made.how != "catkin" or not made.offered or not view.is_sure(made.conditions):
             continue

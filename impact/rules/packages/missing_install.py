@@ -10,9 +10,9 @@ Why it breaks
 
 Severity
     error where the installed package is sure to fail: a library that catkin_package() exports beside installed ones, a
-    program that an installed launch file starts in any case. warning otherwise: in a workspace that is never installed
-    all of this works. Where more than three programs of a package are not installed beside others, one of them is
-    enough, and the rest are notes.
+    program that an installed launch file starts in any case (in ROS 1 where others are installed). warning otherwise:
+    in a workspace that is never installed all of this works. Where more than three programs of a package are not
+    installed beside others, one of them is enough, and the rest are notes.
 
 Example
     add_executable(udp_socket_node src/udp_socket_node.cpp)     # and install(TARGETS tcp_socket_node ...)
@@ -25,6 +25,7 @@ Not reported
     that install no target and were never released.
 """
 
+import posixpath
 import re
 
 from ...model.cmake.build import BuildTarget, is_for_tests
@@ -84,8 +85,10 @@ def missing_install(view: TargetView, package: Package):
         elif not installed and not _is_used(package, target) and _is_to_be_installed(view, package, installs):
             why = "nothing"
         if why and (why == "started" or not _is_aside(package, target)):
-            # Who finds a package that exports a library stops where the library is neither a target nor installed.
-            stops = installed and (why == "exported" or (why == "started" and _is_started(view, package, name)))
+            # Who finds a package that exports a library stops where the library is neither a target nor installed, and
+            # ROS 2 starts nothing that is not installed.
+            started_anyway = why == "started" and _is_started(view, package, name)
+            stops = (installed and why == "exported") or ((installed or view.target.ros == 2) and started_anyway)
             doubts = () if stops and not (unset or package.build.unresolved) else (Doubt.DISTURBS,)
             together = {"nothing": _ONCE, "program": _HABIT}.get(why, ())
             data = {"unset": min(unset, default="")}
@@ -119,7 +122,7 @@ def _is_started(view: TargetView, package: Package, name: str) -> bool:
             r = use.reference
             if (r.package, r.name, r.kind, use.role) != (package.name, name, "executable", "run") or r.conditional:
                 continue
-            if ".launch" in use.at.path and is_installed(installs, use.at.path):
+            if "launch" in posixpath.basename(use.at.path) and is_installed(installs, use.at.path):
                 return True
     return False
 

@@ -30,7 +30,7 @@ from collections.abc import Iterable, Iterator
 from ...model.cmake.catkin_order import find_generator, waits_for
 from ...model.cmake.links import is_opaque, resolve_package
 from ...model.workspace import is_interface_header
-from ..vocabulary import Diagnostic, Doubt, Insert, Package, TargetView, Text, list_place_doubts, rule
+from ..vocabulary import Diagnostic, Doubt, Insert, Package, TargetView, Text, Together, list_place_doubts, rule
 
 _OF_ROSIDL = re.compile(r"rosidl|typesupport|BINARY_DIR")
 """What items are called that give a target the folder of what rosidl generates."""
@@ -109,7 +109,8 @@ def _list_unordered(view: TargetView, package: Package) -> Iterator[Diagnostic]:
         data = {"header": include.path, "targets": names, "target": names[0], "variable": variable}
         held = own or head in package.build.catkin_components
         fix = _add_dependencies(package, [t for _, t in uses], variable) if held else ()
-        yield Diagnostic(target.at, f"{maker}_{kind}", package.name, data, "", (Doubt.LATE,), fix=fix)
+        same = (Together(f"`{head}` is not waited for", everywhere=True),)
+        yield Diagnostic(target.at, f"{maker}_{kind}", package.name, data, "", (Doubt.LATE,), fix=fix, together=same)
 
 
 def _add_dependencies(package: Package, targets, variable: str) -> tuple[Insert, ...]:

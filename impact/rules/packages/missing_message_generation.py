@@ -20,7 +20,7 @@ Not reported
     Packages that find a generator themselves, or genmsg, which looks for those that are installed.
 """
 
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 
 
 @rule(
@@ -45,4 +45,5 @@ def missing_message_generation(view: TargetView, package: Package):
     doubts = (
         (Doubt.INCOMPLETE,) if through or "genmsg" in found or view.unknown_contents.may_come_along(package) else ()
     )
-    yield Diagnostic(generated[0].at, "message_generation", package.name, {"through": through}, doubts=doubts)
+    data, same = {"through": through}, (Together("message_generation is not found", everywhere=True),)
+    yield Diagnostic(generated[0].at, "message_generation", package.name, data, doubts=doubts, together=same)

@@ -149,5 +149,7 @@ def _list_opened(view: TargetView, package: Package) -> Iterator[Diagnostic]:
             continue  # it may be made, as calibrations are
         places = list_places(owner, installs)
         if places is not None and f"share/{owner.name}/{name}" not in places:  # as which another file is installed
-            same, data = (Together(f"no {name} in {owner.name}", everywhere=True),), {"by": owner.name}
+            # Of many, the files have been moved, or the package has never been launched where it is installed.
+            same = (Together(f"no {name} in {owner.name}", everywhere=True), Together("opened", few=3))
+            data = {"by": owner.name}
             yield Diagnostic(use.at, name, package.name, data, "opened", (Doubt.DISTURBS,), together=same)

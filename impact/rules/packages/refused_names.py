@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from ...model.cmake.build import RefusedName
 from ...model.cmake.conditions import make_version_key
-from ..vocabulary import Diagnostic, Package, TargetView, list_place_doubts
+from ..vocabulary import Diagnostic, Package, TargetView, Together, list_place_doubts
 
 # What only code that is not read can mend.
 _HIDDEN = frozenset(("branch", "branch sources", "no sources", "no target", "no value"))
@@ -17,6 +17,8 @@ def list_refused(view: TargetView, package: Package, *kinds: str) -> Iterator[Re
     for refused in package.build.refused:
         if refused.kind not in kinds or (refused.kind in _HIDDEN and package.build.may_add_targets):
             continue
+        if "$" in refused.name and refused.kind != "no value":
+            continue  # what a variable stands for that nothing which was read sets is not known
         # In other branches a target is made on other machines alone.
         distro = any("ROS_DISTRO" in condition.text for way in refused.ways for condition in way)
         if refused.kind == "branch" and (any(map(view.applies, refused.ways)) or not distro):
@@ -35,8 +37,10 @@ def find_policy_version(package: Package) -> tuple[int, ...]:
     return make_version_key(upper or lower)
 
 
-def diagnose_refused(view: TargetView, package: Package, kind: str) -> Iterator[Diagnostic]:
-    """What a rule reports that all refused names of one kind are faults for."""
+def diagnose_refused(
+    view: TargetView, package: Package, kind: str, together: tuple[Together, ...] = ()
+) -> Iterator[Diagnostic]:
+    """What a rule reports that all refused names of one kind are faults for. together: what they share."""
     for refused in list_refused(view, package, kind):
         doubts = list_place_doubts(view, "build", refused.conditions)
-        yield Diagnostic(refused.at, refused.name, package.name, doubts=doubts)
+        yield Diagnostic(refused.at, refused.name, package.name, doubts=doubts, together=together)

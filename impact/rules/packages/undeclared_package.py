@@ -18,11 +18,14 @@ Severity
     package on a clean machine of the target: nothing that is declared brings it, and where the target's manifest of
     something declared is not known, no version of that in any distro does. What CMake is asked for where tests are
     built counts, since it is asked whenever the package is configured, and so do tests of ROS 2, which are compiled
-    along. warning: environment variables, tests of ROS 1, imports, launch files, settings, the tool of the build type,
-    installed headers that nothing here compiles, or where a dependency is known nowhere and may bring it (a package
-    named like an interface package may provide interfaces). note: conditional code, examples (installed ones too, in
-    what they import and start), documentation, files that nothing compiles, and all but the first of more than five
-    imports (in ROS 1, of several), or packages that launch files start, which a package does not declare.
+    along. In ROS 2 also what a program in Python imports, or an installed launch file starts, in any case, and no
+    package of the workspace brings, where at most five such are missing. warning: environment variables, tests of ROS
+    1, other imports and launch files, settings, the tool of the build type, installed headers that nothing here
+    compiles, or where a dependency is known nowhere and may bring it (a package named like an interface package may
+    provide interfaces). note: conditional code, examples (installed ones too, in what they import and start),
+    documentation, files that nothing compiles, or is known to install, and all but the first of more than five imports
+    (in ROS 1 and in tests, of several), or packages that launch files start, which a package does not declare, and
+    further packages that lack the same.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
@@ -51,9 +54,9 @@ from ..vocabulary import (
 from .clean_machine import ASKED, collect_missing_doubts
 from .undeclared_needs import declare_need, describe_need, find_kind, find_undeclared, make_texts
 
-_FEW = {1: 1, 2: 5}
-"""So many undeclared imports, or packages that launch files start, are each reported, by the generation of ROS: who
-runs ROS 1 has most of it at hand, and its manifests were rarely complete."""
+_FEW = 5
+"""So many undeclared imports, or packages that launch files start, are each reported in ROS 2. Who runs ROS 1 has most
+of it at hand, and its manifests were rarely complete: there one of a package tells of all."""
 _NOWHERE, _CONDITION = ", nowhere", ", condition"
 
 
@@ -77,7 +80,11 @@ def undeclared_package(view: TargetView, package: Package):
     # Of more things that a package runs with and does not declare, the first is reported, best such as the target has.
     firsts = [(*_find_gravest(view, package, name, needs), name) for name, needs in missing.items()]
     firsts.sort(key=lambda first: (not view.is_available(first[2]), make_sort_key(first[0])))
+    # Where so many are missing, those who run the package set their machines up by other means than its manifest.
+    habit = sum(first.how not in (*ASKED, "include") for first, _, _ in firsts) > _FEW
     for first, doubts, name in firsts:
+        if habit and first.how not in (*ASKED, "include"):
+            doubts = (*doubts, Doubt.LUCKY)
         condition = next((d.condition for d in package.manifest.dependencies if d.name == name and d.condition), "")
         if condition and "$ROS_" not in condition:
             doubts = (*doubts, Doubt.CONDITIONAL)  # whoever uses it may set the variable
@@ -91,7 +98,7 @@ def undeclared_package(view: TargetView, package: Package):
             find_kind(first, _CONDITION if condition else "" if known else _NOWHERE),
             doubts,
             fix=declare_need(view, package, first, name) if limit_severity(*doubts) != "note" and not condition else (),
-            together=_find_together(view, first),
+            together=_find_together(view, first, name),
         )
 
 
@@ -104,10 +111,13 @@ def _find_gravest(view: TargetView, package: Package, name: str, needs: list[Nee
     return max(found, key=lambda one: SEVERITIES.index(limit_severity(*one[1])))
 
 
-def _find_together(view: TargetView, need: Need) -> tuple[Together, ...]:
-    """Launch files and modules are used one by one, and whoever declares the first looks for the others."""
+def _find_together(view: TargetView, need: Need, name: str) -> tuple[Together, ...]:
+    """Launch files and modules are used one by one, and whoever declares the first looks for the others: those of the
+    package and, of what several packages lack, those of the others."""
     if need.how in (*ASKED, "include"):
         return ()
-    apart = need.how in ("setting", "shell") or (need.how == "import" and view.target.ros > 1)
-    cause = need.how if apart else "started"
-    return (Together(cause, few=_FEW[view.target.ros]),)
+    early = view.target.ros == 1
+    apart = need.how in ("setting", "shell") or (need.how == "import" and not early)
+    cause = "test" if need.role == "test" and not early else need.how if apart else "started"
+    few = 1 if early or need.role == "test" else _FEW
+    return (Together(cause, few=few), Together(f"`{name}` is not declared, {cause}", everywhere=True))

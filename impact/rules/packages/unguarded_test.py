@@ -7,6 +7,9 @@ What it does
 Why it breaks
     With -DCATKIN_ENABLE_TESTING=OFF, catkin stops: "() is not available when tests are not enabled".
 
+Severity
+    warning for the first of the workspace; note for the rest: whoever switches tests off stops at the first.
+
 Example
     catkin_add_nosetests(test)
 
@@ -19,8 +22,11 @@ Not reported
     Calls under any test of a variable that is called after testing.
 """
 
-from ..vocabulary import Package, TargetView, Text, rule
+from ..vocabulary import Package, TargetView, Text, Together, rule
 from .refused_names import diagnose_refused
+
+# Who builds the workspace has tests switched on, or stops at the first of them.
+_ONCE = (Together("tests that are not guarded", everywhere=True),)
 
 
 @rule(
@@ -32,4 +38,4 @@ from .refused_names import diagnose_refused
 )
 def unguarded_test(view: TargetView, package: Package):
     if view.target.ros == 1:
-        yield from diagnose_refused(view, package, "unguarded")
+        yield from diagnose_refused(view, package, "unguarded", _ONCE)

@@ -8,6 +8,9 @@ What it does
 Why it breaks
     Everything works from the source tree (catkin's devel space, symlinked installs), and the installed robot lacks it.
 
+Severity
+    error for a folder of launch files of ROS 2, which `ros2 launch` finds nowhere else; warning.
+
 Example
     install(DIRECTORY launch DESTINATION share/${PROJECT_NAME})         # and a launch file opens config/robot.yaml
 
@@ -24,9 +27,9 @@ import re
 from collections.abc import Iterator, Mapping
 
 from ...model.package import find_folder_role
-from ..vocabulary import At, Diagnostic, Package, TargetView, Text, Together, rule
+from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .data_files import list_copied
-from .install_rules import is_installed, list_places, list_references, read_installs
+from .install_rules import LAUNCH_FILE, is_installed, list_places, list_references, read_installs
 
 _OPENED = "`{file}` is opened through the package's share folder ({opener}) but is not installed"
 _LAUNCHED = "`{file}` cannot be launched: the folder `{subject}` is not installed"
@@ -37,7 +40,6 @@ _DATA = ("launch", "urdf", "meshes", "robots", "worlds")
 
 
 @rule(
-    severity="warning",
     group="missing-install",
     texts={
         "nothing": Text(
@@ -87,7 +89,8 @@ def _list_nothing(package: Package, opened: Mapping[str, At]) -> Iterator[Diagno
     folders = tuple(folder for folder in (*_DATA, *sorted(inside - {*_DATA})) if package.has_files(folder))
     if folders and package.build.catkin_package is not None and not package.manifest.metapackage:
         data = {"folders": folders, "listed": " ".join(folders)}
-        yield Diagnostic(package.build.catkin_package, "install", package.name, data, "nothing")
+        doubts = (Doubt.DISTURBS,)
+        yield Diagnostic(package.build.catkin_package, "install", package.name, data, "nothing", doubts)
 
 
 def _list_opened(package: Package, installs, opened: Mapping[str, At]) -> Iterator[Diagnostic]:
@@ -117,7 +120,9 @@ def _list_opened(package: Package, installs, opened: Mapping[str, At]) -> Iterat
         if package.build_type == "ament_python":
             share, kind = f"share/{package.name}", f"{kind}, data_files" if kind != "elsewhere" else kind
         data = {"file": name, "share": share, "opener": opener}
-        yield Diagnostic(at, folder, package.name, data, kind, together=_FOLDERS)
+        # ROS 1 finds all of it in the source space too; what is opened may be opened on request alone.
+        doubts = () if kind.startswith("launch") and not catkin else (Doubt.DISTURBS,)
+        yield Diagnostic(at, folder, package.name, data, kind, doubts, together=_FOLDERS)
 
 
 # What keeps an empty folder in a repository, and what a program that has its state in a folder leaves there.
@@ -136,10 +141,6 @@ def _lies_in(places: frozenset[str] | None, package: str, inside: str) -> bool:
     return places is not None and not places.isdisjoint((f"share/{package}/{inside}", f"lib/{package}/{name}"))
 
 
-# Launch files of ROS 2, which `ros2 launch` finds in the share folder alone.
-_LAUNCH = re.compile(r"[._]launch\.(?:py|xml|ya?ml)\Z")
-
-
 def _find_launch_file(package: Package, installs) -> str:
     """Where no rule installs any file of the folder of launch files, one in it that starts or opens something: in
     ROS 1, which finds them in the source space too, an installed program of the package, or anything where other
@@ -155,6 +156,6 @@ def _find_launch_file(package: Package, installs) -> str:
     for use in package.linked.references:
         path, r = use.at.path, use.reference
         own = siblings or ((r.kind, r.package) == ("executable", package.name) and r.name in programs)
-        if use.role == "run" and path in files and (own or (not catkin and _LAUNCH.search(path))):
+        if use.role == "run" and path in files and (own or (not catkin and LAUNCH_FILE.search(path))):
             return package.strip_path(path)
     return ""

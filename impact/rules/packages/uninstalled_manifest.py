@@ -9,6 +9,9 @@ Why it breaks
     that it will stop doing so; a Debian package of the package has none, nor has a package of plain CMake, whatever
     builds it. Source: REP 136.
 
+Severity
+    warning; note for a package of plain CMake whose manifest exports nothing: nobody is known to read it there.
+
 Example
     data_files=[('shared/sled', ['package.xml'])]
 
@@ -24,7 +27,7 @@ import fnmatch
 import posixpath
 
 from ...model.cmake.interpreter import calls_unmodelled
-from ..vocabulary import At, Diagnostic, Package, TargetView, Text, rule
+from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, rule
 from .data_files import read_data_files
 from .install_rules import is_installed
 
@@ -60,4 +63,6 @@ def _check_plain(package: Package):
     if not build.installs or build.unresolved or build.builds_others or is_installed(build.installs, own):
         return
     if build.packaged is None and not calls_unmodelled(build):
-        yield Diagnostic(At(build.files[0], 1), "package.xml", package.name, kind="plain")
+        read = any(export.tag != "build_type" for export in package.manifest.exports)
+        doubts = (read or Doubt.UNCHECKED,)
+        yield Diagnostic(At(build.files[0], 1), "package.xml", package.name, kind="plain", doubts=doubts)

@@ -8,7 +8,8 @@ Why it breaks
     The generator stops: it finds no definition of the field's type, or cannot read the line.
 
 Severity
-    error; warning for `Header` in ROS 1, which some generators know by themselves.
+    error; warning for `Header` in ROS 1, which some generators know by themselves, and where the generator is called
+    under a condition that is not known.
 
 Example
     rosidl_generate_interfaces(${PROJECT_NAME} "msg/Dose.msg")      # which has a field of geometry_msgs/Point
@@ -47,17 +48,21 @@ _ROS1_PRIMITIVE = PRIMITIVES | _FROM_ROS1 | {"float", "double"}
 )
 def unlisted_field_package(view: TargetView, package: Package):
     # Of a package for both generations the files of the other one are not generated.
-    generated = [g for g in package.build.generated if g.how == ("rosidl" if view.target.ros == 2 else "catkin")]
+    how = "rosidl" if view.target.ros == 2 else "catkin"
+    generated = [g for g in package.build.generated if g.how == how and view.applies(g.conditions)]
     if not generated:
         return
+    sure = {file for g in generated if view.is_sure(g.conditions) for file in g.files}
     listed = {file for g in generated for file in g.files}
     given = {name for g in generated for name, _ in g.dependencies} | _list_implied(view, listed)
     seen = set()
     for interface in package.linked.interfaces:
         if interface.path not in listed:
             continue
+        certain = interface.path in sure or Doubt.CONDITIONAL
         for line, text in interface.definition.unread:
-            yield Diagnostic(At(interface.path, line), text.split()[0], package.name, kind="no field")
+            at = At(interface.path, line)
+            yield Diagnostic(at, text.split()[0], package.name, kind="no field", doubts=(certain,))
         adapted = package.build_type != "catkin" and interface.definition.kind != "idl"
         primitive = PRIMITIVES if adapted else _ROS1_PRIMITIVE
         for section in interface.definition.sections:
@@ -69,7 +74,7 @@ def unlisted_field_package(view: TargetView, package: Package):
                     if field.type not in names and field.type not in seen:
                         seen.add(field.type)
                         data = {"replacement": make_full_name(field.type, "") if field.type in _FROM_ROS1 else ""}
-                        yield Diagnostic(at, field.type, package.name, data, "own type")
+                        yield Diagnostic(at, field.type, package.name, data, "own type", (certain,))
                     continue
                 if not owner or owner == package.name or owner in seen:
                     continue
@@ -78,7 +83,7 @@ def unlisted_field_package(view: TargetView, package: Package):
                     if names and name not in names and (owner, name) not in seen:
                         seen.add((owner, name))
                         data = {"owner": owner, "name": name}
-                        yield Diagnostic(at, f"{owner}/{name}", package.name, data, "other type")
+                        yield Diagnostic(at, f"{owner}/{name}", package.name, data, "other type", (certain,))
                     continue
                 if owner in view.list_transitive(given):
                     continue
@@ -86,7 +91,7 @@ def unlisted_field_package(view: TargetView, package: Package):
                 rosidl = generated[0].how == "rosidl"
                 generator = "rosidl_generate_interfaces" if rosidl else "generate_messages"
                 data = {"type": field.type, "generator": generator}
-                doubts = () if rosidl or field.type != "Header" else (Doubt.INCOMPLETE,)
+                doubts = (certain, rosidl or field.type != "Header" or Doubt.INCOMPLETE)
                 yield Diagnostic(at, owner, package.name, data, "dependency", doubts)
 
 

@@ -8,10 +8,10 @@ Why it breaks
     Nothing can install the package there: `rosdep install` fails, find_package fails, the node does not start.
 
 Severity
-    error when CMake or sources use the package without a condition; warning otherwise, where the package waits for the
-    first sync on another platform (whoever is there has ros-testing until then), and where a .repos or .rosinstall file
-    of the workspace may bring it, since people also build dependencies from source in an underlay (name it in
-    `[workspace] underlays`, `repos` or `private`).
+    error, since `rosdep install` stops; warning where the package waits for the first sync on another platform (whoever
+    is there has ros-testing until then), and where a .repos or .rosinstall file of the workspace may bring it, since
+    people also build dependencies from source in an underlay (name it in `[workspace] underlays`, `repos` or
+    `private`).
 
 Example
     <depend>moveit_plugins</depend>             # on a distro where MoveIt is not released
@@ -22,7 +22,9 @@ Use instead
 
 Not reported
     Packages of the workspace, names listed in `[workspace] private`, dependencies under a condition that does not hold
-    on the target, and packages with a known successor (renamed-package and removed-package say it).
+    on the target, and packages with a known successor (renamed-package and removed-package say it). Assumed is that
+    whatever the distro names at its last sync can be installed from its archive: which packages the build farm failed
+    to build, or leaves out on a platform, is not recorded where it could be read.
 """
 
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
@@ -58,10 +60,6 @@ def unreleased_package(view: TargetView, package: Package):
         if view.may_be_in_submodule(name):
             continue
         seen.add(name)
-        used = any(
-            need.certain and need.required and need.role == "build" and any(p.name == name for p in need.providers)
-            for need in view.list_needs(package)
-        )
         last = target.find_last_distro(name)
         waits = (testing := target.find_testing()) is not None and testing.find_version(name) is not None
         before = [day for day, version in target.list_releases(name) if day <= target.date and version is None]
@@ -74,5 +72,5 @@ def unreleased_package(view: TargetView, package: Package):
             package.name,
             {"distro": target.distro, "last": last, "day": before[-1] if before else "", "listed": listed},
             kind=kind,
-            doubts=(used or Doubt.INCOMPLETE, not (beside or (waits and target.moving)) or Doubt.INCOMPLETE),
+            doubts=(not (beside or (waits and target.moving)) or Doubt.INCOMPLETE,),
         )

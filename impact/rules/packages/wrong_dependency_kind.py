@@ -29,6 +29,7 @@ from .clean_machine import collect_chance_doubts
 from .dependency_kinds import fix_kind, list_wrong_kinds
 
 _ONCE = (Together("linked and declared to build"),)
+_IMPORTED = (Together("needed to run and declared to build"),)
 _AS_DEPEND = "declare it as `<{tag}>`"
 
 
@@ -48,17 +49,18 @@ def wrong_dependency_kind(view: TargetView, package: Package):
     for wrong in list_wrong_kinds(view, package):
         if wrong.lacking == "dependants":
             continue  # which unexported-dependency reports
-        at, kind, doubts, together = wrong.need.at, "run, to build", (Doubt.LATE,), ()
+        at, kind, doubts, together = wrong.need.at, "run, to build", (Doubt.LATE,), _IMPORTED
         if wrong.lacking == "linked":
             at, kind, together = view.find_place(package, wrong.name), "run, linked", _ONCE
         elif wrong.lacking == "build":
             chance = collect_chance_doubts(view, package, wrong.need)
+            together = ()
             if Doubt.LUCKY not in chance:
                 doubts = chance  # rosdep installs run dependencies along, and the build farm does not
             others = "to run" if "exec" in wrong.kinds else "for dependants"
             kind = "build, for tests" if wrong.kinds == {"test"} else f"build, {others}"
         elif wrong.kinds == {"test"}:
-            kind, doubts = "run, for tests", (Doubt.DISPENSABLE,)
+            kind, doubts, together = "run, for tests", (Doubt.DISPENSABLE,), ()
         tag = "depend" if wrong.lacking == "build" else "exec_depend"
         fix = fix_kind(view, package, wrong.name, tag, wrong.kinds)
         data = {"tag": translate_tag(tag, package.manifest.format)[0]}

@@ -12,9 +12,9 @@ Why it breaks
     The node stops with a SyntaxError, or a TypeError for annotations, before it runs.
 
 Severity
-    error for files that are nodes, scripts or modules of the package; warning for tests, for modules that Python 2 most
-    likely runs, and for the first place of a package that only the newest distro does not accept; note for examples and
-    the rest of those.
+    error for files that are nodes, scripts or modules of the package; warning for tests, for files that only an install
+    rule of unknown files may install, for modules that Python 2 most likely runs, and for the first place of a package
+    that only the newest distro does not accept; note for examples and the rest of those.
 
 Example
     except urllib2.URLError, e:

@@ -12,6 +12,7 @@ from ..distro.conda import CHANNELS
 from ..tables import find_table
 from ..unpacked import read_table
 from ..version import is_at_least, parse
+from .components import find_missing_component
 from .libraries import load_libraries
 
 if TYPE_CHECKING:
@@ -134,6 +135,9 @@ def find_gone_component(target: "DistroTarget", package: str, component: str) ->
             version = target.find_library(row.library)
             if version and is_at_least(version, row.gone_in):
                 return Gone(version, row.help)
+    missing = find_missing_component(target, package, component)
+    if missing is not None:
+        return Gone(missing.version, f"did you mean `{missing.near}`?" if missing.near else "")
     # The configuration of Boost finds one for each component, `boost_json`.
     library = _KNOWN.packages.get(package, _OTHER).library
     found = load_libraries().find_configuration(library, f"{library}_{component}", target.platform, target.find_library)

@@ -112,6 +112,10 @@ class Offers:
         build = history.build(history.versions[-1], ("plugins",)) if history is not None else None
         return None if build is None else any(name in (plugin.name, plugin.type) for plugin in build.plugins)
 
+    def has_plugin_owner(self, name: str) -> bool:
+        """Whether any version of any package of the target's ROS generation has a plugin of this name or type."""
+        return any(ros == self.target.ros for _, ros in self.surfaces.plugin_owners.get(name, ()))
+
     def find_standard(self, name: str) -> int:
         """The C++ standard that a package asks of those who link it, as CMake writes it; 0 when nothing tells."""
         offer = self.find_package(name)

@@ -101,7 +101,7 @@ class Override:
         """A method of this name that the base classes have where the method, which is to override one, surely overrides
         none of them, and the packages of all base classes; None where it may, or where one of the classes is not
         completely known."""
-        lineage = self._list_lineage() if self.says_so and self.bases else None
+        lineage = list_lineage(self.offers, self.bases) if self.says_so and self.bases else None
         if lineage is None:
             return None
         methods = [one for package, name in lineage for one in self._list_entities(package, f"{name}::{member}")]
@@ -115,31 +115,6 @@ class Override:
             return None
         return methods[0], tuple(dict.fromkeys(package for package, _ in lineage))
 
-    def _list_lineage(self) -> list[tuple[str, str]] | None:
-        """The packages and names of all classes that the method's class is derived from; None where one of them is not
-        stored of the target's very version."""
-        lineage = list(self.bases)
-        for package, name in lineage:
-            offer = self.offers.find_package(package)
-            if offer is None or not offer.exact or offer.build.has_empty_folders:
-                return None
-            declared = [one for one in self._list_entities(package, name) if one.kind in CLASSES]
-            if not declared:
-                return None
-            for base in {base.type.partition("<")[0] for one in declared for base in one.bases}:
-                if base == "std::enable_shared_from_this":
-                    continue  # which has nothing virtual
-                full = next(
-                    (one for one in offer.line.bases.get(name, ()) if f"::{one}".endswith(f"::{base.lstrip(':')}")), ""
-                )
-                owners = dict.fromkeys((package, full.partition("::")[0])) if full else {}
-                owner = next((one for one in owners if self.offers.has_name("c++", full, one)), None)
-                if owner is None:
-                    return None
-                if (owner, full) not in lineage:
-                    lineage.append((owner, full))
-        return lineage
-
     def _may_match(self, method: Entity, parameters: set[str]) -> bool:
         """Whether the method may override another, as far as their types show. parameters: of templates, which may
         stand for anything."""
@@ -152,9 +127,7 @@ class Override:
         return not any(differs_plainly(one, other) for one, other in pairs)
 
     def _list_entities(self, package: str, name: str, version: str = "") -> list[Entity]:
-        """What a version of a package, by default the target's, declares by a name."""
-        offer = self.offers.find_package(package)
-        return list(offer.history.iterate_entities(name, version or offer.stored)) if offer is not None else []
+        return list_entities(self.offers, package, name, version)
 
     def _list_virtual_methods(self, package: str, name: str, version: str = "") -> list[Entity]:
         """The methods of a name that may be overridden."""
@@ -263,6 +236,50 @@ class Override:
         for one in found:
             found.extend(other for other in self.offers.list_exports(one) or () if other not in found)
         return found
+
+
+def list_entities(offers: Offers, package: str, name: str, version: str = "") -> list[Entity]:
+    """What a version of a package, by default the target's, declares by a name."""
+    offer = offers.find_package(package)
+    return list(offer.history.iterate_entities(name, version or offer.stored)) if offer is not None else []
+
+
+def list_lineage(offers: Offers, bases: Sequence[tuple[str, str]]) -> list[tuple[str, str]] | None:
+    """Some classes and all that they are derived from, by their packages and names; None where one of them is not
+    stored of the target's very version."""
+    lineage = list(bases)
+    for package, name in lineage:
+        offer = offers.find_package(package)
+        if offer is None or not offer.exact or offer.build.has_empty_folders:
+            return None
+        declared = [one for one in list_entities(offers, package, name) if one.kind in CLASSES]
+        if not declared:
+            return None
+        for base in {base.type.partition("<")[0] for one in declared for base in one.bases}:
+            if base == "std::enable_shared_from_this":
+                continue  # which has nothing virtual
+            full = next(
+                (one for one in offer.line.bases.get(name, ()) if f"::{one}".endswith(f"::{base.lstrip(':')}")), ""
+            )
+            owners = dict.fromkeys((package, full.partition("::")[0])) if full else {}
+            owner = next((one for one in owners if offers.has_name("c++", full, one)), None)
+            if owner is None:
+                return None
+            if (owner, full) not in lineage:
+                lineage.append((owner, full))
+    return lineage
+
+
+def has_method(offers: Offers, bases: Sequence[tuple[str, str]], member: str) -> bool | None:
+    """Whether some classes, or those that they are derived from, declare a method of a name; None where one of them is
+    not completely known."""
+    lineage = list_lineage(offers, bases)
+    if lineage is None:
+        return None
+    histories = [(offers.find_history(package), name) for package, name in lineage]
+    if not all(history is not None and history.is_understood(name) for history, name in histories):
+        return None
+    return any(list_entities(offers, package, f"{name}::{member}") for package, name in lineage)
 
 
 def _is_derived_from_parameter(class_: Entity) -> bool:

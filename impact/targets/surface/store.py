@@ -457,6 +457,22 @@ class Surfaces(StoredRows):
         """What the file holds."""
         return About(*next(self.fetch("SELECT packages, versions, distros, date FROM about")))
 
+    @cached_property
+    def plugin_owners(self) -> dict[str, tuple[tuple[str, int], ...]]:
+        """The lookup names and types of plugins that some version of a package has, with those packages and their ROS
+        generations. All packages are read for it."""
+        decode = make_decoder(Plugin)
+        rows = (
+            (name, (package, ros))
+            for package, ros, data in self.fetch("SELECT name, ros, data FROM package ORDER BY name, ros")
+            for kind, scope, value, _ in (read_packed(data, _Rows)[2] if ros else ())
+            if kind == "build" and scope == "plugins"
+            for plugin in (decode(value),)
+            for name in (plugin.name, plugin.type)
+            if name
+        )
+        return {name: tuple(dict.fromkeys(owners)) for name, owners in group_pairs(rows).items()}
+
     def list_other_packages(self, name: str) -> tuple[str, ...]:
         """The packages that have, or had, a name that some package lost."""
         return self._elsewhere.get(name, ())

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from ....edges.groups import group_pairs
 from ...facts.flow import DataMember, FlowExpr
 from ...model.fields.topics import extract_uses
 from ...model.flow.code import SOURCES, FlowCode, Fn, get_tail
+from ...model.flow.endpoints import Site
 from ...model.flow.graph import Endpoint, Graph
 from ...model.flow.join import Join
 from ...model.flow.types import Cls, split_name
@@ -22,19 +24,24 @@ _DEEPEST = 4
 class ObservedMember(NamedTuple):
     """A member of a class or a variable outside of one. type: as written. value: its initialiser where that is a
     literal. is_state: a function other than a constructor writes it. is_read: something besides the callback names
-    it."""
+    it. least: where it is only ever counted up or set to numbers, the least of these (the number itself where it is
+    only counted up is what the constructor leaves); None for the others."""
 
     name: str
     type: str
     value: str
     is_state: bool
     is_read: bool
+    least: int | None = None
 
 
 class CppCallback(NamedTuple):
     """A callback with where it is given to the framework. kind: `subscriber`, `service`, `timer` or `action`, or `main`
     for a program from its start. path, line: of the call that subscribes. site: the function that it stands in.
-    function: the callback's own, None where it is not known. message_type: `package/Name`, empty for a timer."""
+    function: the callback's own, None where it is not known. message_type: `package/Name`, empty for a timer.
+    is_filtered: it comes through a filter of messages; joined: then, or with a camera, the types of all messages that
+    the callback is given, and place: the place of this one; registered: path and line of the call that gives the filter
+    its callback, empty where that is not known."""
 
     kind: str
     path: str
@@ -44,6 +51,10 @@ class CppCallback(NamedTuple):
     message_type: str
     topics: tuple[str, ...]
     nodes: tuple[str, ...]
+    is_filtered: bool = False
+    joined: tuple[str, ...] = ()
+    place: int = 0
+    registered: tuple[str, int] = ("", 0)
 
     @property
     def name(self) -> str:
@@ -86,11 +97,28 @@ def _list_endpoints(
         for callback in site.callbacks or (None,):
             of = [one for one in rows if callback is None or one.callback is None or one.callback.name == callback.name]
             known = [one.type for one in of if "/" in one.type] or [each for each in types if "/" in each]
-            yield CppCallback(
+            found = CppCallback(
                 _KINDS[site.role], path, line, fn, callback, known[0] if known else "",
                 tuple(dict.fromkeys(one.topic for one in of if one.topic)),
                 tuple(dict.fromkeys(one.node for one in of if one.node)),
             )  # fmt: skip
+            yield _join_messages(found, join, site, [one.type for one in of])
+
+
+def _join_messages(callback: CppCallback, join: Join, site: Site, types: Sequence[str]) -> CppCallback:
+    """A callback with what it is given besides, where a synchronizer or a camera gives it several messages. types: of
+    its endpoints at this place."""
+    row = site.use.row
+    if row.camera_info and callback.kind == "subscriber":
+        joined = tuple(dict.fromkeys(types))
+        return callback._replace(joined=joined if len(joined) == 2 and joined[0] == callback.message_type else ())
+    if row.framework != "message_filters":
+        return callback
+    found = join.sites.find_joined(site)
+    if found is None or len(found[0]) < 2:
+        return callback._replace(is_filtered=True)
+    joined, place, registered = found
+    return callback._replace(is_filtered=True, joined=joined, place=place, registered=registered)
 
 
 def _list_timers(join: Join, graph: Graph, language: str) -> Iterator[CppCallback]:
@@ -176,7 +204,8 @@ class ClassReader:
                 if member.name not in found:
                     written = self._is_written_by_others(member.name, one)
                     read = self._is_named_by_others(member.name, callback)
-                    found[member.name] = _make_member(member, written, read)
+                    least = self._find_least(member.name, one) if written else None
+                    found[member.name] = _make_member(member, written, read)._replace(least=least)
         return list(found.values())
 
     def _is_written_by_others(self, name: str, cls: Cls) -> bool:
@@ -190,6 +219,28 @@ class ClassReader:
             if any(name in _split_target(each.path) and each.kind == "write" for each in fn.facts.accesses):
                 return True
         return self._changes(name, cls)
+
+    def _find_least(self, name: str, cls: Cls) -> int | None:
+        """The least number that a member is set to which is otherwise only counted up, as far as its class shows."""
+        rows = [
+            (each.operator, each.value)
+            for fn in self.code.list_functions(cls)
+            if not self.code.is_constructor(fn)
+            for each in fn.facts.assignments
+            if name in _split_target(each.target)
+        ]
+        paths = {fn.source.path for fn in self.code.list_functions(cls)}
+        places = [
+            use
+            for path in paths & self._uses.keys()
+            for function in self._uses[path].functions
+            for use in function.uses
+            if use.path.removeprefix("this.") == name and use.how not in ("read", "test", "size", "returned")
+        ]
+        # Whoever is handed it may set it to anything.
+        if any(use.how != "write" and not (use.how == "kept" and "&" not in use.type) for use in places):
+            return None
+        return find_least(rows)
 
     def _changes(self, name: str, cls: Cls) -> bool:
         """Whether the field facts have it that something is put into a member."""
@@ -249,19 +300,42 @@ class ClassReader:
         definitions = tuple(dict.fromkeys(each for one in targets for each in one.definitions if "$" not in each))
         return max(17, standard), definitions
 
-    def list_defining(self, symbols: set[str]) -> list[str]:
-        """The source files whose functions some mangled names may be."""
+    def list_defining(self, symbols: set[str], beside: str) -> list[str]:
+        """The source files whose functions some symbols may be: mangled names of C++, and names of C, which are looked
+        for in the package of a path."""
         found: dict[str, None] = {}
+        package = self.find_package(beside)
         for fn in self.code.functions:
-            if fn.source.facts.language != "cpp" or not fn.name or not fn.source.path.endswith(SOURCES):
+            path = fn.source.path
+            if fn.source.facts.language != "cpp" or not fn.name or not path.endswith(SOURCES):
+                continue
+            if path.endswith(".c"):
+                if fn.name in symbols and self.find_package(path) is package:
+                    found[path] = None
                 continue
             parts = split_name(fn.name)[-2:]
             mark = "".join(f"{len(part)}{part}" for part in parts)
             if len(parts) == 2 and parts[0] == parts[1]:
                 mark = f"{len(parts[0])}{parts[0]}C"
-            if any(mark in symbol for symbol in symbols):
-                found[fn.source.path] = None
+            if any(symbol.startswith("_Z") and mark in symbol for symbol in symbols):
+                found[path] = None
         return list(found)
+
+
+_HIGHEST = 2**31 - 1
+
+
+def find_least(assignments: Sequence[tuple[str, FlowExpr]]) -> int | None:
+    """The least value of what is only counted up (operator and value of each assignment) or set to whole numbers, from
+    these: a high number where it is only counted up. None where it is changed otherwise."""
+    least = _HIGHEST
+    for operator, value in assignments:
+        number = int(value.text) if value.kind == "number" and re.fullmatch(r"-?[0-9]{1,9}", value.text) else None
+        if number is None or operator not in ("=", "+=") or (operator == "+=" and number < 0):
+            return None
+        if operator == "=":
+            least = min(least, number)
+    return least if assignments else None
 
 
 def _make_member(member: DataMember, written: bool, read: bool) -> ObservedMember:

@@ -28,10 +28,10 @@ from .toolchain import (
     NO_FUZZER,
     NO_SANITIZER,
     CompilerRun,
+    CompilerTime,
     find_clang,
     find_fuzzer,
     find_native_compiler,
-    run_compiler,
 )
 
 _ROUNDS_OF_HEADERS = 8
@@ -96,6 +96,22 @@ class Workshop:
         self._lines: dict[str, list[str]] = {}
         self._wanted: dict[tuple[str, bool], bool] = {}
         self._cuts: SourceCuts | None = None
+        self.time = CompilerTime(bounds.compiling)
+        # What could not be built, with the reason.
+        self._failed: dict[Path, str] = {}
+
+    def start_time(self) -> None:
+        """What is prepared from now on has a time limit of its own."""
+        self.time = CompilerTime(self.bounds.compiling)
+
+    def _run(self, command: Sequence[str], folder: Path) -> CompilerRun:
+        """Runs a compiler. Raises CannotCompile where there is no time left."""
+        if self.time.is_over:
+            raise CannotCompile(self.time.describe())
+        run = self.time.run(command, folder)
+        if run.status != 0 and self.time.is_over:
+            raise CannotCompile(self.time.describe())
+        return run
 
     # Headers
 
@@ -246,6 +262,11 @@ class Workshop:
     def _list_flags(self, unit: SourceUnit) -> list[str]:
         folders = [*([str(self.boost)] if unit.boost else []), str(self.include)]
         folders += map(str, list_folders(self.definitions.ros))
+        if unit.is_c:
+            given = [each for each in self._list_macros(unit) if each.startswith(("-D", "-U", "-w"))]
+            given += [f"-D{each}" for each in unit.definitions]
+            folders += [*unit.folders, *self._folders]
+            return ["-x", "c", "-std=gnu11", *given, *(f"-I{each}" for each in folders)]
         flags = ["-x", "c++", *self._list_macros(unit)]
         flags += [f"-D{each}" for each in unit.definitions]
         flags += sorted(unit.stubs.flags) if unit.stubs is not None else []
@@ -290,6 +311,8 @@ class Workshop:
         folder = self.folder / unit.name
         folder.mkdir(parents=True, exist_ok=True)
         path = folder / "harness.cpp"
+        if unit.is_c:
+            return self._prepare_plain(unit, clang, path)
         unit.stubs = StubTable(self._read_line, self._is_own, self._list_bases)
         unit.cuts = SourceCuts(self.root, folder)
         self._cuts = unit.cuts
@@ -331,6 +354,21 @@ class Workshop:
             self._store(unit, path)
         raise CannotCompile(self._describe(first) if first is not None else "does not compile")
 
+    def _prepare_plain(self, unit: SourceUnit, clang: str, path: Path) -> Path:
+        """A unit that is compiled as it is, with headers that are found in the workspace, or not at all."""
+        self._store(unit, path)
+        for _ in range(_ROUNDS_OF_HEADERS):
+            run = self._check(unit, clang, path)
+            if run.status == 0:
+                return path
+            errors = parse_errors(run.errors)
+            missing = [each.text.split("'")[1] for each in errors if each.text.endswith("file not found")]
+            if not missing or not all(self._find_own(each) for each in missing):
+                raise CannotCompile(self._describe_run(run))
+            for header in missing:
+                self._make_header(header, unit)
+        raise CannotCompile("its headers are not found")
+
     def _drop_parts(self, unit: SourceUnit, errors: Sequence[CompileError], write, path: Path) -> None:
         """Leaves the parts of a unit out that have errors: one line where that may be left out on its own."""
         lines = unit.text.split("\n")
@@ -361,14 +399,14 @@ class Workshop:
         flags = self._list_flags(unit)
         made = self._find_precompiled(unit, clang)
         if made is None:
-            return run_compiler([clang, *flags, *_IR_FLAGS, *rest], folder)
+            return self._run([clang, *flags, *_IR_FLAGS, *rest], folder)
         at = flags.index("-include")
         # Its headers come first: the same ones elsewhere would define everything again.
         given = ("-include-pch", str(made), f"-I{made.parent / 'include'}")
-        run = run_compiler([clang, *flags[:at], *given, *flags[at:], *_IR_FLAGS, *rest], folder)
+        run = self._run([clang, *flags[:at], *given, *flags[at:], *_IR_FLAGS, *rest], folder)
         if run.status < 0 or (run.status and (str(made) in run.errors or "PCH file" in run.errors)):
             self._facade.forget(made)
-            return run_compiler([clang, *flags, *_IR_FLAGS, *rest], folder)
+            return self._run([clang, *flags, *_IR_FLAGS, *rest], folder)
         return run
 
     def _find_precompiled(self, unit: SourceUnit, clang: str) -> Path | None:
@@ -421,33 +459,45 @@ class Workshop:
         program = folder / name
         if program.exists():
             return program
+        if program not in self._failed:
+            self.start_time()
+            try:
+                self._build_program(units, compiler, flags, runtime, program)
+                return program
+            except CannotCompile as error:
+                self._failed[program] = str(error)
+        raise CannotCompile(self._failed[program])
+
+    def _build_program(
+        self, units: Sequence[SourceUnit], compiler: str, flags: Sequence[str], runtime: Path, program: Path
+    ) -> None:
+        folder, name = program.parent, program.name
         objects = []
         for number, unit in enumerate(units):
             at = self.folder / unit.name / f"{name}.o"
             command = [compiler, *self._list_flags(unit), *flags, "-c", "harness.cpp", "-o", str(at)]
-            run = run_compiler(command, at.parent)
+            run = self._run(command, at.parent)
             if run.status == 0:
                 objects.append(str(at))
             elif number == 0:
                 raise CannotCompile(self._describe_run(run))
         made = folder / f"{name}_runtime.o"
         own = [each for each in flags if not each.startswith("-fsanitize=fuzzer")]
-        run = run_compiler(
+        run = self._run(
             [compiler, "-std=gnu++17", "-w", *own, f"-I{RUNTIME}", "-c", str(runtime), "-o", str(made)], folder
         )
         if run.status != 0:
             raise CannotCompile(self._describe_run(run))
         link = [compiler, *flags, *objects, str(made), "-o", str(program), "-pthread", "-Wl,--no-demangle"]
-        run = run_compiler(link, folder)
+        run = self._run(link, folder)
         if run.status != 0:
             unknown = folder / f"{name}_unknown.o"
             self._write_unknown(folder, name, run.errors)
             command = [compiler, "-w", "-std=gnu++17", f"-I{RUNTIME}", "-c", f"{name}_unknown.cpp", "-o", str(unknown)]
-            run = run_compiler(command, folder)
-            run = run_compiler([*link, str(unknown)], folder) if run.status == 0 else run
+            run = self._run(command, folder)
+            run = self._run([*link, str(unknown)], folder) if run.status == 0 else run
         if run.status != 0:
             raise CannotCompile(f"does not link: {run.errors.strip().splitlines()[0] if run.errors.strip() else ''}")
-        return program
 
     def _write_unknown(self, folder: Path, name: str, errors: str) -> None:
         """Functions and data that nothing defines: to use one ends a replay as unknown."""

@@ -57,6 +57,7 @@ class HarnessWriter:
             f'#include "{self.root}/{source}"',
             "#undef main",
             "#include <rclcpp/rclcpp.hpp>" if self.ros == 2 else "#include <ros/ros.h>",
+            *(["#include <ri_filters.hpp>"] if any(one.joined for one in callbacks) else []),
             "",
         ]
         blocks: dict[str, tuple[int, int]] = {}
@@ -78,6 +79,7 @@ class HarnessWriter:
             "",
             'extern "C" void ri_reset() {',
             "  ri::phase = 0; ri::is_main = false; ri::given = ri::last_given = nullptr; ri::prepare = nullptr;",
+            "  ri::wanted_place = 0;",
             "}",
         ]
         lines += ["struct RiEntry { const char *name; void (*run)(); };"]
@@ -92,8 +94,12 @@ class HarnessWriter:
     def write_further(self, name: str, source: str) -> SourceUnit:
         """A unit of another source file, whose functions a harness calls."""
         standard, definitions = self.reader.find_standard(source)
+        folders = (f"{self.root}/{source.rpartition('/')[0]}",)
+        if source.endswith(".c"):
+            text = f'#define main ri_main_of_{name}\n#include "{self.root}/{source}"\n'
+            return SourceUnit(name, text, {}, standard, definitions, folders, is_c=True)
         text = f'#include "ri_core.hpp"\n#define main ri_main_of_{name}\n#include "{self.root}/{source}"\n'
-        return SourceUnit(name, text, {}, standard, definitions, (f"{self.root}/{source.rpartition('/')[0]}",))
+        return SourceUnit(name, text, {}, standard, definitions, folders)
 
     # Ways
 
@@ -159,9 +165,10 @@ class HarnessWriter:
         return "main" in {fn.name for fn in self.reader.code.functions_in.get(path, ())}
 
     def _write_waiting(self, callback: CppCallback) -> list[str]:
+        path, line = callback.registered if callback.registered[0] else (callback.path, callback.line)
         return [
-            f'  ri::wanted_kind = "{callback.kind}"; ri::wanted_file = "{callback.path}";',
-            f"  ri::wanted_line = {callback.line};",
+            f'  ri::wanted_kind = "{callback.kind}"; ri::wanted_file = "{path}";',
+            f"  ri::wanted_line = {line}; ri::wanted_place = {callback.place};",
         ]
 
     def _run_main(self, callback: CppCallback) -> str:
@@ -340,6 +347,14 @@ class HarnessWriter:
                 f"  {holder}<{parts[0]}, {parts[1]}, decltype(call)> holder{{call}};",
                 "  holder.run(&holder);",
             ]
+        if callback.joined and all(callback.joined):
+            types = ", ".join(spell_type(each, callback.kind, self.ros) for each in callback.joined)
+            return [
+                *lines,
+                f"  ri::wanted_place = {callback.place};",
+                f"  message_filters::SyncHolder<decltype(call), {types}> holder{{call}};",
+                "  holder.run(&holder);",
+            ]
         lines.append(
             f'  static_assert(ri::takes_message<{type_}, decltype(call)>, "not called with the message alone");'
         )
@@ -374,7 +389,10 @@ def _write_state(members: Sequence[ObservedMember], object_: str, prefix: str, e
         name = each.name
         make = "true" if every else "false"
         lines.append(f'  ri::name_member({object_}{name}, "{get_tail(name)}", {make});')
-        if each.is_state:
+        if each.is_state and each.least is not None and not every:
+            # What the constructor leaves is the least value, too.
+            lines.append(f'  ri::fill_rising({object_}{name}, "{prefix}{get_tail(name)}", {each.least});')
+        elif each.is_state:
             lines.append(f'  ri::fill_state({object_}{name}, "{prefix}{get_tail(name)}");')
     lines += [f'  ri::watch_member({object_}{e.name}, "{get_tail(e.name)}");' for e in members if e.is_read]
     return lines

@@ -34,7 +34,8 @@ class PreparedCallback:
     entry: the function to explore; way: `built` (the node is constructed) or `bare` (an object of zeros, whose members
     are any). others: further entries, to be taken where the first leads nowhere. ir_texts: the harness, then the
     sources that it calls into. stood_for: names of headers that are not on this machine. left_out: sources that do not
-    compile, with the reason.
+    compile, with the reason. compiled_in: seconds of the processor that compilers worked for the source of the callback
+    and what it calls; rounds: how often they ran.
     """
 
     kind: str
@@ -57,6 +58,8 @@ class PreparedCallback:
     function_place: tuple[str, int] = ("", 0)
     units: tuple[SourceUnit, ...] = ()
     workshop: Workshop | None = None
+    compiled_in: float = 0.0
+    rounds: int = 0
 
     def is_workspace_file(self, path: str) -> bool:
         """Whether a path of the debug information is of the workspace."""
@@ -101,7 +104,7 @@ class HarnessSession:
         packages = [package.path for package in workspace]
         self.workshop = Workshop(root, folder, self.definitions, packages, self.bounds, self._is_own, self._list_bases)
         self._further: dict[str, tuple[SourceUnit, str] | str] = {}
-        self._units = 0
+        self._units = self._tried = 0
 
     def _is_own(self, scope: str, name: str) -> bool:
         code = self.reader.code
@@ -166,13 +169,18 @@ class HarnessSession:
             return harness.unit
 
         unit = harness.unit
+        self.workshop.start_time()
         try:
             self.workshop.prepare(unit, write)
             text = self.workshop.read_ir(unit)
         except CannotCompile as error:
-            yield from (self._describe(one, str(error)) for one in rows)
+            for one in rows:
+                found = self._describe(one, str(error))
+                found.compiled_in, found.rounds = self.workshop.time.used, self.workshop.time.rounds
+                yield found
             return
         units, texts, left_out = self._add_further(unit, text, source)
+        time = self.workshop.time
         stood_for = tuple(each for one in units if one.stubs is not None for each in one.stubs.list_names())
         for number, one in enumerate(rows):
             entries = harness.entries.get(number, [])
@@ -184,6 +192,7 @@ class HarnessSession:
             found.entry, found.way, found.others = first.name, first.way, tuple(others)
             found.ir_texts, found.units, found.workshop = tuple(texts), tuple(units), self.workshop
             found.stood_for, found.left_out = stood_for, left_out
+            found.compiled_in, found.rounds = time.used, time.rounds
             yield found
 
     def _explain(self, callback: CppCallback, number: int, unit: SourceUnit) -> str:
@@ -212,8 +221,8 @@ class HarnessSession:
         units, texts, left_out = [unit], [text], {}
         seen, left = {source}, [text]
         while left and len(units) <= _FURTHER:
-            symbols = {each[1] for each in _DECLARED.findall(left.pop()) if each[1].startswith("_Z")}
-            for path in self.reader.list_defining(symbols):
+            symbols = {each[1] for each in _DECLARED.findall(left.pop())}
+            for path in self.reader.list_defining(symbols, source):
                 if path in seen or len(units) > _FURTHER:
                     continue
                 seen.add(path)
@@ -228,11 +237,15 @@ class HarnessSession:
 
     def _compile_further(self, path: str) -> tuple[SourceUnit, str] | str:
         if path not in self._further:
-            unit = self.writer.write_further(f"further{len(self._further)}", path)
+            self._tried += 1
+            unit = self.writer.write_further(f"further{self._tried}", path)
+            used = self.workshop.time.used
             try:
                 self.workshop.prepare(unit)
                 self._further[path] = unit, self.workshop.read_ir(unit)
             except CannotCompile as error:
+                if self.workshop.time.is_over and used > self.bounds.compiling / 2:
+                    return str(error)  # what it calls besides took the time; with another source it may compile
                 self._further[path] = str(error)
         return self._further[path]
 

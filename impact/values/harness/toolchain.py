@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
+import resource
 import shutil
+import signal
 import subprocess
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
+
+from ..sandbox import make_limiter
 
 OLDEST = 15
 """Of clang: from this version on, pointers in LLVM IR have no types."""
@@ -21,6 +26,7 @@ NO_SANITIZER = (
 NO_FUZZER = "libFuzzer is needed for --fuzz: `sudo apt install clang libclang-rt-dev`"
 _VERSION = re.compile(r"clang version ([0-9]+)")
 _SECONDS = 180
+_FILE_BYTES = 2_000_000_000
 
 
 class CompilerRun(NamedTuple):
@@ -29,6 +35,38 @@ class CompilerRun(NamedTuple):
     status: int
     out: str
     errors: str
+
+
+class CompilerTime:
+    """How long compilers may work for what is prepared together. seconds: of the processor, so that a busy machine
+    changes nothing; used: those until now; rounds: how often a compiler ran."""
+
+    def __init__(self, seconds: float):
+        self.seconds = seconds
+        self.used, self.rounds = 0.0, 0
+
+    @property
+    def is_over(self) -> bool:
+        """Whether nothing is left."""
+        return self.used >= self.seconds
+
+    def describe(self) -> str:
+        """That it is over, for the user."""
+        return f"compiling took more than {self.seconds:g} s ({self.rounds} runs of the compiler)"
+
+    def run(self, command: Sequence[str], folder: Path) -> CompilerRun:
+        """Runs a compiler within what is left."""
+        start = _measure_children()
+        run = run_compiler(command, folder, processor=max(self.seconds - self.used, 1.0))
+        self.used += _measure_children() - start
+        self.rounds += 1
+        return run
+
+
+def _measure_children() -> float:
+    """The processor time of the processes that ended."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 @cache
@@ -79,16 +117,22 @@ def _links(path: str, flags: Sequence[str], code: str) -> bool:
     return run_compiler(command, Path("/"), 60, code).status == 0
 
 
-def run_compiler(command: Sequence[str], folder: Path, seconds: float = _SECONDS, given: str = "") -> CompilerRun:
-    """Runs a compiler in a folder, with messages in English. given: its standard input."""
+def run_compiler(
+    command: Sequence[str], folder: Path, seconds: float = _SECONDS, given: str = "", processor: float = 0.0
+) -> CompilerRun:
+    """Runs a compiler in a folder, with messages in English. given: its standard input. seconds: of the clock;
+    processor: seconds of the processor, 0 for no limit."""
     environment = {"PATH": os.environ.get("PATH", os.defpath), "LC_ALL": "C", "HOME": str(folder)}
+    limit = make_limiter(math.ceil(processor), _FILE_BYTES) if processor else None
     try:
         done = subprocess.run(
             list(command), cwd=folder, env=environment, input=given, capture_output=True, text=True,
-            errors="replace", timeout=seconds,
+            errors="replace", timeout=seconds, preexec_fn=limit,
         )  # fmt: skip
     except subprocess.TimeoutExpired:
         return CompilerRun(-1, "", f"{Path(command[0]).name} took more than {seconds:.0f} seconds")
     except OSError as error:
         return CompilerRun(-1, "", f"{command[0]}: {error.strerror or error}")
+    if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
+        return CompilerRun(-1, "", f"{Path(command[0]).name} was stopped for its time")
     return CompilerRun(done.returncode, done.stdout, done.stderr)

@@ -30,6 +30,7 @@ from ..outcomes import (
     UnknownFunction,
 )
 from .access import fill_cells, load, read_scalar, require_access, store
+from .doubtful import DoubtfulCrash, list_certain
 from .exceptions import fill_standard_table, find_handler, get_raised, is_standard_exception, unwind
 from .layout import ArrayType, IrType, StructureType, UnknownSizeError, get_integer_type
 from .memory import AddressMap, MemoryObject, interpret_raw, read_raw
@@ -152,6 +153,7 @@ class Executor:
         self.pending: list[State] = []
         # Places among the paths of those on which the callback had not begun.
         self.early: list[int] = []
+        self.doubtful: list[DoubtfulCrash] = []
         self.globals: dict[str, int] = {}
         self.made_globals: dict[int, tuple[str, MemoryObject]] = {}
         self.instructions = 0
@@ -417,6 +419,7 @@ class Executor:
             if model is _UNDECIDED:
                 raise self.make_unknown(_NO_ANSWER)
             if model is None:
+                self.solving.note_impossible(condition)
                 self._note_known(state, condition, False)
                 state.taken = (*state.taken, False)
                 return False
@@ -437,6 +440,8 @@ class Executor:
             self._note_known(twin, condition, not answer)
             self.pending.append(twin)
             self._add_condition(state, first)
+        else:
+            self.solving.note_impossible(second)
         self._note_known(state, condition, answer)
         state.taken = (*state.taken, answer)
         return answer
@@ -590,12 +595,20 @@ class Executor:
                 self.exploration.left = len(self.pending)
                 break
             self._run_way(self.pending.pop())
+        self._restore_crashes()
         self._exclude_early()
         self.exploration.inputs.update(self.solving.inputs)
         self.exploration.functions.update(self.solving.derived)
+        self.exploration.exceeded = frozenset(self.solving.exceeded)
         self.exploration.instructions = self.instructions
         self.exploration.seconds = time.monotonic() - self.started
         return self.exploration
+
+    def _restore_crashes(self):
+        """A crash that comes whatever the values are that nothing is known of is one."""
+        paths = self.exploration.paths
+        for one in list_certain(self.doubtful, paths, lambda each: self.solving.find_traits(each).names):
+            paths[one.number] = replace(paths[one.number], result=Reaction.CRASH, crash=one.kind, reason="")
 
     def _exclude_early(self):
         """Where the harness says when the callback begins, what happened before is none of it."""
@@ -742,15 +755,18 @@ class Executor:
         if saved is None or count & (count - 1) == 0 or count <= 4:
             state.owner = object()
             frame.saved[block.number] = Visit(
-                {phi.result: frame.registers[phi.result] for phi in block.phis}, dict(state.objects),
+                {phi.result: frame.registers[phi.result] for phi in frame.function.phis
+                 if phi.result in frame.registers},
+                dict(state.objects),
                 len(state.conditions), fresh,
             )  # fmt: skip
 
     def _compare_visit(self, state: State, frame: Frame, saved: Visit) -> Any:
         """Whether all is as at an earlier visit: 0, 1 or a condition."""
         conditions: list[Any] = []
-        for phi in frame.block.phis:
-            before, now = saved.registers[phi.result], frame.registers[phi.result]
+        # Those of all blocks: a block may be jumped back to within a loop whose counter another block has.
+        for phi in frame.function.phis:
+            before, now = saved.registers.get(phi.result, UNDEFINED), frame.registers.get(phi.result, UNDEFINED)
             if is_same_value(before, now):
                 continue
             if phi.type.is_pointer or phi.type.is_aggregate or before is UNDEFINED or now is UNDEFINED:
@@ -817,6 +833,8 @@ class Executor:
         ):
             kind = end.crash.value if end.crash is not None else ""
             result, reason = Reaction.UNKNOWN, f"{kind}, unless what is not known prevents it"
+            if end.crash not in (None, CrashKind.NULL, CrashKind.DANGLING) and _UNWRITTEN not in assumed:
+                self.doubtful.append(DoubtfulCrash(len(self.exploration.paths), end.crash))
         if result in (Reaction.HANDLED, Reaction.LOG_ONLY, Reaction.IGNORED):
             place = NOWHERE
         self.exploration.paths.append(

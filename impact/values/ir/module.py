@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 from .layout import IrType
@@ -120,6 +121,11 @@ class Function:
     entry: str
     unit: Any
     subprogram: int = 0
+
+    @cached_property
+    def phis(self) -> list[Instruction]:
+        """Those of all blocks."""
+        return [phi for block in self.blocks.values() for phi in block.phis]
 
 
 @dataclass

@@ -53,6 +53,10 @@ _NOTHING = Traits(frozenset(), frozenset(), False, False)
 Model = Mapping[str, int]
 
 
+_LARGE = 30_000
+"""A size that no bound is near to."""
+
+
 class Solving:
     """The variables of one exploration, and answers about conjunctions of conditions over them. inputs: the variables
     where somebody else keeps them."""
@@ -63,6 +67,8 @@ class Solving:
         # Variables that are no inputs, and what each stands for.
         self.assumed: dict[str, str] = {}
         self.derived: dict[str, UnknownFunction] = {}
+        # Sizes of arrays and texts of which something was asked that only larger ones fulfil.
+        self.exceeded: set[str] = set()
         self.questions = 0
         self.undecided = 0
         self._traits: dict[int, tuple[z3.ExprRef, Traits]] = {}
@@ -77,6 +83,22 @@ class Solving:
             found = SymbolicInput(path, kind, bits, is_signed, z3.BitVec(path, bits), most)
             self.inputs[path] = found
         return found
+
+    def note_impossible(self, term: z3.BoolRef) -> None:
+        """Takes in a condition that no input within the bounds fulfils: a larger array or text may. One that is larger
+        by one tells nothing, since every loop asks for it at its end."""
+        names = self.find_traits(term).names
+        if len(names) != 1 or (name := next(iter(names))) in self.exceeded:
+            return
+        size = self.inputs.get(name)
+        if size is None or size.kind is not InputKind.SIZE or not size.most or size.most + 1 >= _LARGE:
+            return
+        next_one, large = (
+            z3.simplify(z3.substitute(term, (size.term, z3.BitVecVal(count, size.bits))))
+            for count in (size.most + 1, _LARGE)
+        )
+        if z3.is_false(next_one) and z3.is_true(large):
+            self.exceeded.add(name)
 
     def find_traits(self, term: z3.ExprRef) -> Traits:
         known = self._traits.get(term.get_id())

@@ -24,14 +24,33 @@ _KINDS = {
 }  # fmt: skip
 
 
+RESPONSE = "response"
+"""The path of what a service answers."""
+
+
 class CallbackCode(NamedTuple):
     """Where a callback stands. name: dotted from its module on: `Driver.on_command`. message: `package/Name`, empty for
-    a timer."""
+    a timer, the type of the service for one of these. joined: the types of all messages that a synchronizer gives it,
+    empty where it is given one; place: of this one among them. kind: as of a callback; has_response: a service gives it
+    the response to fill in, as rclpy does."""
 
     module: ModuleCode
     name: str
     line: int
     message: str
+    joined: tuple[str, ...] = ()
+    place: int = 0
+    kind: str = "subscriber"
+    has_response: bool = False
+
+    def list_messages(self) -> list[tuple[str, str]]:
+        """The messages that it is given: path of the input, type. A response is empty, and no input."""
+        if self.kind == "service":
+            response = [(RESPONSE, f"{self.message}Response")] if self.has_response else []
+            return [("request", f"{self.message}Request"), *response]
+        if not self.joined:
+            return [("msg", self.message)] if self.message else []
+        return [("msg" if at == self.place else f"msg{at + 1}", type_) for at, type_ in enumerate(self.joined)]
 
 
 def explore_callback(
@@ -55,6 +74,7 @@ def explore_callback(
         if path is not None:
             found.paths.append(path)
     found.left = len(pending)
+    found.exceeded = frozenset(solving.exceeded)
     found.seconds = time.monotonic() - started
     return found
 
@@ -89,11 +109,16 @@ def _take_way(
         _forget_preparation(run)
         watch.start(node, function)
         given: list[Any] = [] if node is None else [node]
-        if callback.message:
-            given.append(messages.make_input(run, callback.message, "msg"))
+        for path, type_ in callback.list_messages():
+            if path == RESPONSE:
+                given.append(messages.make_empty(type_))
+            else:
+                given.append(messages.make_input(run, type_, path) if type_ else Opaque(path))
         machine.is_quiet = False
         run.is_preparing = False
-        machine.call_function(function, [*given, *_make_others(function, len(given))], {})
+        returned = machine.call_function(function, [*given, *_make_others(function, len(given))], {})
+        if callback.kind == "service" and returned is not None:
+            run.note_effect("reply", RESPONSE)
         watch.finish()
     except PythonThrownError as error:
         return _make_crash(run, error)

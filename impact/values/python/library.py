@@ -14,7 +14,7 @@ from typing import Any
 
 import z3
 
-from . import arrays, operators, texts
+from . import arrays, operators, rotations, texts
 from .messages import Messages
 from .modules import Handle, KnownMethod, ModuleCode, Outside, PythonClass, PythonFunction, PythonObject, TimeValue
 from .terms import (
@@ -123,7 +123,10 @@ def find_message_type(name: str) -> str:
     if len(parts) >= 3 and parts[1] in ("msg", "srv", "action"):
         if parts[1] == "msg":
             return f"{parts[0]}/{parts[-1]}" if len(parts) <= 4 and parts[-1][:1].isupper() else ""
-        return ""
+        # `SetBoolResponse` of ROS 1, `SetBool.Response` of ROS 2.
+        whole = "".join(parts[2:])
+        is_part = parts[1] == "srv" and len(parts) <= 4 and whole.endswith(("Request", "Response"))
+        return f"{parts[0]}/{whole}" if is_part else ""
     return {
         "rospy.Header": "std_msgs/Header", "rospy.AnyMsg": "",
     }.get(name, "")  # fmt: skip
@@ -197,7 +200,11 @@ def call_outside(machine: Machine, name: str, given: list[Any], named: dict[str,
         return Handle("client")
     if name in _QUIET:
         return Opaque(name)
-    if name.partition(".")[0] in _COMPUTES:
+    if (turned := rotations.call_rotation(run, name, given)) is not None:
+        return turned
+    if name in _MESSAGE_MOMENTS and given:
+        return _read_moment(machine, name, given[0])
+    if name.partition(".")[0] in _COMPUTES or name.startswith("tf.transformations."):
         return _compute_outside(machine, name, given)
     own = getattr(builtins, name.removeprefix("builtins."), None)
     if isinstance(own, type) and issubclass(own, BaseException):
@@ -287,6 +294,20 @@ def _make_moment(machine: Machine, name: str, given: Sequence[Any], named: dict[
         return Opaque(name)
     seconds, more = given[0], given[1] if len(given) > 1 else 0
     return TimeValue(round(seconds * 1e9) + int(more), is_span)
+
+
+_MESSAGE_MOMENTS = frozenset(("rclpy.time.Time.from_msg", "rclpy.duration.Duration.from_msg"))
+
+
+def _read_moment(machine: Machine, name: str, message: Any) -> TimeValue:
+    """The moment that a message holds. Source: rclpy/time.py, which refuses moments before the first one."""
+    moment = read_time(machine, message)
+    is_span = "uration" in name
+    if not is_span and isinstance(message, Record):
+        seconds = machine.get_member(message, machine.messages.list_fields(message.type)[0])
+        if machine.run.decide(operators.compare(ast.Lt, seconds, 0)):
+            raise machine.run.throw("ValueError", "Seconds value must not be negative")
+    return TimeValue(moment.nanoseconds, is_span)
 
 
 def read_time(machine: Machine, value: Any) -> TimeValue:

@@ -46,6 +46,7 @@ from .terms import (
 )  # fmt: skip
 
 _DEEPEST = 40
+_LONGEST_ARRAY = 64
 _MISSING = object()
 _PLAIN = (int, float, str, bytes, bool, type(None))
 _LOOSE = (*_PLAIN, Whole, Real, Truth, SymbolicText, Opaque)
@@ -841,7 +842,11 @@ class PythonMachine:
         if isinstance(left, Opaque) or isinstance(right, Opaque):
             return Opaque(_describe(left if isinstance(left, Opaque) else right))
         if is_number(left) and is_number(right):
-            return operators.compare(kind, left, right)
+            said = operators.compare(kind, left, right)
+            if isinstance(said, bool):
+                self.run.note_size(left, right)
+                self.run.note_size(right, left)
+            return said
         if isinstance(left, TimeValue) or isinstance(right, TimeValue) or _is_time(left) or _is_time(right):
             return library.compare_moments(self, kind, left, right)
         if kind in (ast.Eq, ast.NotEq):
@@ -1064,6 +1069,10 @@ class PythonMachine:
         """The elements that a loop over a value goes through."""
         if isinstance(value, ListValue):
             return list(self.run.fix_items(value))
+        if isinstance(value, ArrayValue) and value.shape and value.shape[0] <= _LONGEST_ARRAY:
+            rest = value.shape[1:]
+            names = [f"{value.name}[{at}]" for at in range(value.shape[0])]
+            return [ArrayValue(one, rest) if rest else Opaque(one) for one in names]
         if isinstance(value, dict):
             return list(value)
         if isinstance(value, (str, SymbolicText)):

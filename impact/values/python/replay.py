@@ -27,15 +27,15 @@ _DEEPEST = 12
 
 class ReplayPlace(NamedTuple):
     """Where a callback is found on the disk. root: of the workspace; folders: where Python looks for its modules; file:
-    of the module."""
+    of the module. given: path and type of the messages that it is given. replies: what it returns is an answer."""
 
     root: Path
     folders: tuple[Path, ...]
     module: str
     function: str
-    message: str
+    given: tuple[tuple[str, str], ...]
     file: Path
-    others: int = 0
+    replies: bool = False
 
 
 def replay_witness(
@@ -46,13 +46,12 @@ def replay_witness(
     task = {
         "roots": [str(place.root)], "folders": [str(one) for one in place.folders], "module": place.module,
         "file": str(place.file),
-        "function": place.function, "others": place.others,
-        "has_message": bool(place.message),
-        "message": _build_message(messages, place.message, "msg", witness.values, 0),
+        "function": place.function, "replies": place.replies,
+        "messages": [_build_message(messages, type_, path, witness.values, 0) for path, type_ in place.given],
         "members": _list_members("this.", witness.values, kinds),
         "globals": _list_members("global.", witness.values, kinds),
         "answers": _list_answers(witness.values, kinds),
-        "definitions": _describe_types(messages, place.message),
+        "definitions": _describe_types(messages, [type_ for _, type_ in place.given]),
     }  # fmt: skip
     ended = run_apart(
         [sys.executable, "-I", str(_PROGRAM)], folder, text=json.dumps(task), seconds=_SECONDS, memory=_MEMORY
@@ -161,10 +160,10 @@ def _list_scalars(start: str, values: dict[str, int], kinds: Mapping[str, Kind])
             yield path, bits - (1 << width) if is_signed and bits >> (width - 1) else bits
 
 
-def _describe_types(messages: Messages, first: str) -> dict[str, Any]:
+def _describe_types(messages: Messages, given: Sequence[str]) -> dict[str, Any]:
     """The definitions of all types that a callback may meet: those that were asked for, and what they consist of."""
     found: dict[str, Any] = {}
-    wanted = sorted({first, *messages.asked})
+    wanted = sorted({*given, *messages.asked})
     while wanted:
         type_ = wanted.pop()
         fields = messages.find_fields(type_)

@@ -156,19 +156,25 @@ class PythonRun:
         if known is not None and z3.is_true(known):
             if self._check(negated):
                 self.open_ways.append([*self._trace, False])
+            else:
+                self._solving.note_impossible(negated)
             return True
         if known is not None and z3.is_false(known):
             kept = self._model
             if not self._check(term):
+                self._solving.note_impossible(term)
                 return False
             self.open_ways.append([*self._trace, True])
             self._model = kept
             return False
         if not self._check(term):
+            self._solving.note_impossible(term)
             return False
         model = self._found
         if self._check(negated):
             self.open_ways.append([*self._trace, False])
+        else:
+            self._solving.note_impossible(negated)
         self._model = model
         return True
 
@@ -273,6 +279,13 @@ class PythonRun:
         self._assume_once(name, z3.ULE(term, most))
         bits = count_bits(0, most)
         return Whole(z3.Extract(bits - 1, 0, term), 0, most)
+
+    def note_size(self, size: Any, number: Any) -> None:
+        """Takes in that the size of an array or text was compared with a number that only larger ones come to."""
+        if isinstance(size, Whole) and type(number) is int and number > size.high and z3.is_app(size.term):
+            for name in self._solving.find_traits(size.term).names:
+                if (known := self.inputs.get(name)) is not None and known.kind is InputKind.SIZE:
+                    self._solving.exceeded.add(name)
 
     def get_text(self, path: str) -> SymbolicText:
         """The input of a path, a text of ASCII."""

@@ -9,7 +9,9 @@ import builtins
 import importlib
 import importlib.abc
 import importlib.machinery
+import inspect
 import json
+import math
 import os
 import struct
 import sys
@@ -143,6 +145,12 @@ class _Stub:
     def __mro_entries__(self, bases):
         return (_Node,)
 
+    def _calculate(self, *_):
+        return _Stub(f"{self._name} calculated")
+
+    __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __truediv__ = __rtruediv__ = _calculate
+    __floordiv__ = __rfloordiv__ = __mod__ = __rmod__ = __pow__ = __rpow__ = __neg__ = __abs__ = _calculate
+
 
 _LEVELS = ("loginfo", "logwarn", "logerr", "logdebug", "logfatal")
 _LOGGER = ("debug", "info", "warn", "warning", "error", "fatal", "critical", "exception")
@@ -174,6 +182,12 @@ def call(name, given, named):
         if last in ("now", "get_rostime"):
             return _Moment(count_nanoseconds())
         return _Moment(int(given[0] * 1e9) + (int(given[1]) if len(given) > 1 else 0) if given else 0)
+    if name == "rclpy.time.Time.from_msg" and given and given[0].sec < 0:
+        raise ValueError("Seconds value must not be negative")
+    if name in ("rclpy.time.Time.from_msg", "rclpy.duration.Duration.from_msg") and given:
+        return _Moment(_count(given[0]))
+    if name.startswith(ROTATIONS) and last in COMPUTED:
+        return COMPUTED[last](*given, **named)
     if last == "sendTransform":
         note("transform")
         return None
@@ -185,6 +199,30 @@ def call(name, given, named):
     if last == "is_shutdown":
         return False
     return _Stub(name + "()")
+
+
+ROTATIONS = ("tf.transformations.", "tf_transformations.", "transformations.")
+
+
+def compute_euler(quaternion, axes="sxyz"):
+    """Roll, pitch and yaw."""
+    x, y, z, w = (float(quaternion[at]) for at in range(4))
+    size = x * x + y * y + z * z + w * w
+    if not size > 1e-15:
+        return 0.0, 0.0, 0.0
+    sine = 2 * (w * y - z * x) / size
+    pitch = math.asin(max(-1.0, min(1.0, sine))) if sine == sine else sine
+    roll = math.atan2(2 * (w * x + y * z) / size, 1 - 2 * (x * x + y * y) / size)
+    return roll, pitch, math.atan2(2 * (w * z + x * y) / size, 1 - 2 * (y * y + z * z) / size)
+
+
+def compute_quaternion(ai, aj, ak, axes="sxyz"):
+    """x, y, z and w, of roll, pitch and yaw."""
+    (a, b), (c, d), (e, f) = ((math.cos(angle / 2), math.sin(angle / 2)) for angle in (ai, aj, ak))
+    return [b * c * e - a * d * f, a * d * e + b * c * f, a * c * f - b * d * e, a * c * e + b * d * f]
+
+
+COMPUTED = {"euler_from_quaternion": compute_euler, "quaternion_from_euler": compute_quaternion}
 
 
 class _Moment:
@@ -326,6 +364,13 @@ class _Parameter:
         raise AttributeError(name)
 
 
+class _Service:
+    """A type of services, with those of its two messages."""
+
+    def __init__(self, name):
+        self.Request, self.Response = find_class(f"{name}Request"), find_class(f"{name}Response")
+
+
 class _StandIn(types.ModuleType):
     """A module that is not there."""
 
@@ -335,6 +380,9 @@ class _StandIn(types.ModuleType):
         parts = self.__name__.split(".")
         if len(parts) > 1 and parts[1] == "msg" and name[:1].isupper():
             return find_class(f"{parts[0]}/{name}")
+        if len(parts) > 1 and parts[1] == "srv" and name[:1].isupper():
+            whole = f"{parts[0]}/{name}"
+            return find_class(whole) if name.endswith(("Request", "Response")) else _Service(whole)
         if name.endswith(("Exception", "Error", "Interrupt")):
             made = type(name, (Exception,), {})
         elif name[:1].isupper() and self.__name__.startswith("rclpy") and name.endswith("Node"):
@@ -422,15 +470,16 @@ def main():
         function = getattr(owner, parts[-1])
     for name, value in TASK["globals"].items():
         setattr(module, name, decode(value))
-    if TASK["has_message"]:
-        given.append(decode(TASK["message"]))
-    given.extend(_Stub(f"argument {index}") for index in range(TASK["others"]))
+    given.extend(decode(one) for one in TASK["messages"])
+    given.extend(_Stub(name) for name in list_others(function, len(given)))
     EVENTS.clear()
     held = [vars(one) for one in (*OWNER[:1], module)]
     before = [dict(one) for one in held]
     sizes = [{name: repr(value) for name, value in one.items() if is_plain(name, value)} for one in before]
     try:
-        function(*given)
+        returned = function(*given)
+        if TASK["replies"] and returned is not None:
+            note("reply", "response")
     except BaseException as error:
         result.update(end="raised", exception=type(error).__name__, detail=str(error)[:300], line=find_line(error))
     for names, olds, texts in zip(held, before, sizes, strict=True):
@@ -441,6 +490,16 @@ def main():
                 note("member", name)
     result["events"] = EVENTS
     real.write(json.dumps(result))
+
+
+def list_others(function, given):
+    """The names of further arguments that a callback has to be given (`callback_args`)."""
+    try:
+        parameters = list(inspect.signature(function).parameters.values())
+    except (TypeError, ValueError):
+        return []
+    wanted = [one for one in parameters if one.kind in (one.POSITIONAL_ONLY, one.POSITIONAL_OR_KEYWORD)]
+    return [one.name for one in wanted[given:] if one.default is one.empty]
 
 
 def is_plain(name, value):

@@ -3,7 +3,7 @@
 import ast
 
 import pytest
-from rosimpact.impact.facts.python.branches import list_branched_names, list_distro_files
+from rosimpact.impact.facts.python.branches import list_branched_names, list_compared_distros, list_distro_files
 
 HEAD = 'import os\ndistro = os.environ["ROS_DISTRO"]\n'
 # (text behind HEAD, (name, line, number of branches) of each)
@@ -58,3 +58,36 @@ def test_long_and_deep_code_is_not_followed():
     assert list(list_branched_names(ast.parse(f'{HEAD}if distro == "x":\n    a = 1\n{chain}print(a)\n'))) == []
     deep = " + ".join([*["'.'"] * 300, "distro", "'.yaml'"])
     assert list(list_distro_files(ast.parse(f"{HEAD}x = {deep}\n"))) == []
+
+
+START = "Node()"
+# (text behind HEAD, (kind, name, line, number of branches) of each)
+OTHERS = [
+    (f'if distro == "a":\n    {START}\nelif distro == "b":\n    {START}\n', [("start", "ROS_DISTRO", 3, 2)]),
+    (f'if distro == "a":\n    {START}\nelif distro == "b":\n    {START}\nelse:\n    pass\n', []),
+    (f'if distro == "a":\n    {START}\nelif distro == "b":\n    print()\n', []),
+    (f'if distro == "a":\n    {START}\nelif c:\n    {START}\n', []),
+    (f'if distro == "a":\n    {START}\n', []),
+    # What is bound and used tells it already.
+    ('if distro == "a":\n    n = Node()\nelif distro == "b":\n    n = Node()\nprint(n)\n', [("name", "n", 7, 2)]),
+    ('print({"a": 1, "b": 2}[distro])\n', [("key", "ROS_DISTRO", 3, 2)]),
+    ('t = {"a": 1}\ndef f():\n    return t[os.environ["ROS_DISTRO"]]\n', [("key", "t", 5, 1)]),
+    ('t = {"a": 1, **u}\nprint(t[distro])\n', []),
+    ('t = {"a": 1}\nt["b"] = 2\nprint(t[distro])\n', []),
+    ('t = {"a": 1}\nt.update(u)\nprint(t[distro])\n', []),
+    ('t = {"a": 1}\nfill(t)\nprint(t[distro])\n', []),
+    ('t = {"a": 1}\nif distro not in t:\n    raise SystemExit\nprint(t[distro])\n', []),
+    ('t = {"a": 1}\ntry:\n    print(t[distro])\nexcept KeyError:\n    pass\n', []),
+    ('t = {"a": 1}\nprint(t[other])\n', []),
+]
+
+
+@pytest.mark.parametrize(("text", "expected"), OTHERS)
+def test_what_is_started_or_looked_up_by_the_distro(text, expected):
+    found = list_branched_names(ast.parse(HEAD + text))
+    assert [(one.kind, one.name, one.line, len(one.branches)) for one in found] == expected
+
+
+def test_names_that_the_distro_is_compared_with():
+    tests = ('distro in ("a", "b")', '"c" != os.getenv("ROS_DISTRO")', 'distro.lower() == "d"', 'name == "e"')
+    assert [one.name for one in list_compared_distros(ast.parse(HEAD + "\n".join(tests)))] == ["a", "b", "c"]

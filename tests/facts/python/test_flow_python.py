@@ -509,7 +509,12 @@ def test_a_captured_variable_is_told_at_every_function_between():
     ("text", "expected"),
     [
         ("for x in y: pass", [("x", "index(y, <>)")]),
-        ("for i, x in enumerate(y): pass", [("i", "<>"), ("x", "index(y, <>)")]),
+        ("for i, x in enumerate(y): pass", [("i", "index(call enumerate(), <>)"), ("x", "index(y, <>)")]),
+        ("for i, x in enumerate(y, 2): pass", [("i", "index(call enumerate(2), <>)"), ("x", "index(y, <>)")]),
+        # In another order, which turn it is tells nothing.
+        ("for i, x in enumerate(sorted(y)): pass", [("i", "<>"), ("x", "index(y, <>)")]),
+        ("for i, (a, b) in enumerate(zip(c, d)): pass",
+         [("i", "index(call enumerate(), <>)"), ("a", "index(c, <>)"), ("b", "index(d, <>)")]),
         ("for a, b in zip(c, d): pass", [("a", "index(c, <>)"), ("b", "index(d, <>)")]),
         ("for k, v in d.items(): pass",
          [("k", "index(index(call d.items(), <>), 0)"), ("v", "index(index(call d.items(), <>), 1)")]),

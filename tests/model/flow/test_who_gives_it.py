@@ -101,7 +101,7 @@ CAMERA = """
         ("", [("/camera/info", "literal")]),
         ('read<std::string>(other_, "other", "b"); read<std::string>(name_, "name", "a");', [("/a/info", "default")]),
         # Beside what is not known the name is one that may be replaced.
-        ("ask(name_);", [("", "unresolved"), ("/camera/info", "partly")]),
+        ("ask(name_);", [("/<name_>/info", "partly"), ("/camera/info", "partly")]),
     ],
 )
 def test_what_a_function_writes_into_its_reference_takes_the_place_of_the_beginning(read, expected):
@@ -162,12 +162,14 @@ MAIN = """
 
 
 @pytest.mark.parametrize(("handles", "expected"), [
-    (['"~"'], "/gps/fix"), ([""], "/fix"), (['"~"', '"~"'], "/gps/fix"), (['"~"', ""], "?"),
+    (['"~"'], ["/gps/fix"]), ([""], ["/fix"]), (['"~"', ""], ["/gps/fix", "/fix"]),
 ])  # fmt: skip
 def test_a_header_has_the_handle_that_whoever_includes_it_makes(handles, expected):
     mains = {f"gps/main{place}.cpp": MAIN.replace("HANDLE", one) for place, one in enumerate(handles)}
     found = graph({"gps/gps.h": HEADER, **mains}, ros=1)
-    assert {topic for _, topic, _ in ends(found, "publisher")} == {expected}
+    assert {(node, topic) for node, topic, _ in ends(found, "publisher")} == {
+        (f"gps/main{place}", topic) for place, topic in enumerate(expected)
+    }
     assert {(one.name, one.default) for one in found.parameters} == {("rate", "1")}
 
 

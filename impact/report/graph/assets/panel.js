@@ -23,6 +23,12 @@ function button(text, act, attributes) {
 const link = (box) => button(box.label, () => go(box), { class: "go", title: box.key });
 
 // A heading and a list, the rest of which comes when asked for.
+// A place that is written as `path:line`.
+function placeOf(text, gone) {
+  const [, file, row] = /^(.*):(\d+)$/.exec(text) || [];
+  return place(file || text, row, gone);
+}
+
 function section(title, rows, item) {
   if (!rows.length) return [];
   const list = make("ul", null, rows.slice(0, BATCH).map(item));
@@ -96,8 +102,7 @@ function nodePanel(box) {
   const { node } = box;
   const facts = [[node.kind, node.language, node.package && `package ${node.package}`].filter(Boolean).join(", "),
     node.executable && `executable ${node.executable}`, node.plugin && `class ${node.plugin}`, node.id !== node.label && node.id, node.path && place(node.path, node.line, node.mark === "removed")];
-  const [, file, row] = /^(.*):(\d+)$/.exec(node.started) || [];
-  if (node.started) facts.push(make("p", { class: "soft" }, "started by ", place(file || node.started, row, node.mark === "removed")));
+  if (node.started) facts.push(make("p", { class: "soft" }, "started by ", placeOf(node.started, node.mark === "removed")));
   if (launches.length > 1 && node.launches.length) facts.push(make("p", { class: "soft" }, "in ", node.launches.join(", ")));
   for (const reason of node.uncertain) facts.push(doubt("not certain: whether it is started, or its name, depends on ", code(reason)));
   return [...head(box.label, marked(box.mark), facts, toolsOf(box)), ...byRole(box, 1),
@@ -170,6 +175,8 @@ function summary() {
       edge.nodeBox ? button(`${edge.nodeBox.label} ${verb(edge.role)} ${edge.nameBox.label}`, () => { choose(edge); revealChosen(); }, { class: "go" }) : link(edge.nameBox),
       place(edge.at[0]?.path, edge.at[0]?.line, edge.mark === "removed"))) : [make("h3", null, "Changes"), make("p", null, `None since ${graph.base}.`)]),
     ...section("Groups", grouping() ? groups[grouping()].list.filter((group) => group.present > 1) : [], (group) => make("li", { class: "foldable" }, link(group), group.below, button(isFolded(group) ? "Unfold" : "Fold", () => fold(group, !isFolded(group)), { class: "small", "aria-label": `${isFolded(group) ? "unfold" : "fold"} ${group.label}` }))),
+    ...section("Possible nodes, whose code is not here", graph.outside, (one) => make("li", { class: "unsure" }, one.name || `any of a ${one.kind}`, " ", code(`${one.package}/${one.executable}`),
+      one.names.length ? make("p", { class: "soft" }, `uses ${one.names.join(", ")}`) : "", ...one.uncertain.map((reason) => doubt("only if ", code(reason))), placeOf(one.started))),
     ...section("Not resolved", coverage.unresolved, (one) => make("li", null, `${one.what} `, one.written ? code(one.written) : "", make("p", { class: "soft" }, withCode(one.reason)), place(one.path, one.line))),
     ...section("Read in part", coverage.unread, (path) => make("li", null, place(path))),
     ...section("Left out, since nothing compiles them", coverage.uncompiled, (path) => make("li", null, place(path))),

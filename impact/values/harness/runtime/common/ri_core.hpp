@@ -307,6 +307,17 @@ template <class T> void fill_state(T &value, const char *name) {
   }
 }
 
+// The same for what is only counted up from where it is, or set to numbers from `least` on.
+template <class T> void fill_rising(T &value, const char *name, int least) {
+  if constexpr (std::is_integral<T>::value && !std::is_same<T, bool>::value && !std::is_const<T>::value) {
+    const T before = value;
+    fill(value, name);
+    if constexpr (std::is_signed<T>::value) ri_assume(value >= before || value >= static_cast<int64_t>(least));
+    else ri_assume(value >= before || least <= 0 || value >= static_cast<uint64_t>(least));
+  }
+  else fill_state(value, name);
+}
+
 // ---- What is sent.
 
 template <class T> void send(const T &value, const char *name);
@@ -455,6 +466,8 @@ inline const char *wanted_kind = nullptr;
 inline const char *wanted_file = nullptr;
 inline int wanted_line = 0;
 inline int wanted_nth = 0;
+// Of several messages that a callback is given, the one that is asked about: it is `msg`, the others `msg2` and so on.
+inline int wanted_place = 0;
 // What comes right before it runs: state is made symbolic and watched.
 inline void (*prepare)(void *) = nullptr;
 inline void *prepare_with = nullptr;

@@ -1,4 +1,4 @@
-// message_filters: a synchronizer's callback is given one message of each topic, msg to msg9.
+// message_filters: a synchronizer's callback is given one message of each topic: `msg` for the one that is asked about, `msg1` to `msg9` for the others.
 #pragma once
 #if RI_ROS == 1
 #include <ros/ros.h>
@@ -14,8 +14,8 @@ template <class M> using ri_const = std::shared_ptr<M const>;
 template <class F, class... M> struct SyncHolder {
   F callback;
   template <size_t... I> static void deliver(F &call, std::index_sequence<I...>) {
-    static const char *names[] = {"msg", "msg2", "msg3", "msg4", "msg5", "msg6", "msg7", "msg8", "msg9"};
-    auto made = std::make_tuple(ri_const<M>(ri::make_message<M>(names[I]))...);
+    static const char *names[] = {"msg1", "msg2", "msg3", "msg4", "msg5", "msg6", "msg7", "msg8", "msg9"};
+    auto made = std::make_tuple(ri_const<M>(ri::make_message<M>(static_cast<int>(I) == ri::wanted_place ? "msg" : names[I]))...);
     ri::begin();
     if constexpr (std::is_invocable<F &, const ri_const<M> &...>::value) call(std::get<I>(made)...);
     else if constexpr (std::is_invocable<F &, const M &...>::value) call(*std::get<I>(made)...);

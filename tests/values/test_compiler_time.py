@@ -1,0 +1,45 @@
+"""Compiling has a time limit of its own, whatever time the exploration has."""
+
+import sys
+
+import pytest
+from harness_workspaces import Prepared, needs_clang, write_workspace
+from rosimpact.impact.values.harness.toolchain import CompilerTime
+from rosimpact.impact.values.outcomes import Bounds
+
+SOURCE = """
+#include <ros/ros.h>
+#include <std_msgs/Int32.h>
+#include <vendor/driver.h>
+vendor::Driver driver;
+void onLevel(const std_msgs::Int32::ConstPtr &msg) { driver.start(vendor::FAST, msg->data); }
+int main(int argc, char **argv) {
+  ros::init(argc, argv, "machine");
+  ros::NodeHandle nh;
+  ros::Subscriber sub = nh.subscribe("level", 1, onLevel);
+  ros::spin();
+}
+"""
+
+
+def test_a_compiler_that_does_not_end_is_stopped(tmp_path):
+    time = CompilerTime(0.5)
+    run = time.run([sys.executable, "-c", "while True: pass"], tmp_path)
+    assert run.status == -1 and run.errors.endswith("was stopped for its time")
+    assert time.is_over and time.describe() == "compiling took more than 0.5 s (1 runs of the compiler)"
+
+
+def test_runs_are_added_up(tmp_path):
+    time = CompilerTime(1000)
+    for rounds in (1, 2):
+        assert time.run([sys.executable, "-c", "print('x')"], tmp_path).out == "x\n"
+        assert time.rounds == rounds and 0 < time.used < 1000 and not time.is_over
+
+
+@needs_clang
+@pytest.mark.parametrize("compiling, expected", [(0.001, "compiling took more than 0.001 s"), (500, "")])
+def test_a_source_that_needs_many_rounds(tmp_path, compiling, expected):
+    root = write_workspace(tmp_path / "ws", 1, {"src/machine.cpp": SOURCE}, "src/machine.cpp")
+    found = Prepared(root, tmp_path / "harness", ("subscriber",), Bounds(compiling=compiling)).by_name["onLevel"]
+    assert found.reason.startswith(expected) and bool(found.reason) == bool(expected)
+    assert found.compiled_in > 0 and (found.rounds == 1 if expected else found.rounds > 3)
