@@ -104,3 +104,18 @@ def test_what_is_included_and_what_a_rule_names():
     text = '#include <a/b.h>\n  #  include "c.hpp"\n// include <d.h>\n#if 0\n#include <e>\n#endif\n'
     assert find_includes(text) == ["a/b.h", "c.hpp", "e"]
     assert split_dependencies("x.o: a.cpp \\\n  /b\\ c/d.h e.h\n") == ["a.cpp", "/b c/d.h", "e.h"]
+
+
+@needs_clang
+@pytest.mark.parametrize("more", ["", " _GNU_SOURCE=2"])
+def test_macros_of_a_package_are_no_reason_for_another_facade(root, monkeypatch, more):
+    """One that the facade was compiled with, too, with another value, is compiled without it."""
+    compiled = list_compiled(monkeypatch)
+    cmake = root / "machine" / "CMakeLists.txt"
+    given = f"target_compile_definitions(machine PRIVATE LIMIT=3{more})"
+    cmake.write_text(cmake.read_text().replace("ament_package()", f"{given}\nament_package()"))
+    node = root / "machine" / "src" / "node.cpp"
+    node.write_text(node.read_text().replace("> 3", "> LIMIT"))
+    explore(root)
+    assert len(compiled) == 1
+    assert len(list((root.parent / "cache" / "facades").glob("*/facade.pch"))) == 1

@@ -693,3 +693,59 @@ def test_larger_arrays_than_were_looked_at(tmp_path, lines, beyond):
     said = evaluate(found, {})
     assert said.beyond == beyond
     assert not beyond or all(one.ignored is None and one.unhandled is None for one in said.fields)
+
+
+FILLED = """
+import rospy
+from std_msgs.msg import Int32
+
+
+class Driver(object):
+    def __init__(self):
+        self.pub = rospy.Publisher("out", Int32, queue_size=1)
+        self.commands, self.fixed, self.table = [], [], {}
+        for name in self.read_names():
+            self.commands.append(name)
+        for name in rospy.get_published_topics():
+            self.keep(self.table, name)
+            print(len(self.fixed))
+        found = {}
+        for name in rospy.get_published_topics():
+            self.keep(found, name)
+        self.found = found
+
+    def keep(self, table, name):
+        table[name] = 1
+
+    def read_names(self):
+        names = []
+        for name in rospy.get_published_topics():
+            names.append(name)
+        return names
+
+    def on_commands(self, msg):
+        for one in self.commands:
+            self.pub.publish(msg)
+
+    def on_table(self, msg):
+        for one in self.table:
+            self.pub.publish(msg)
+
+    def on_found(self, msg):
+        for one in self.found:
+            self.pub.publish(msg)
+
+    def on_fixed(self, msg):
+        for one in self.fixed:
+            self.pub.publish(msg)
+"""
+
+
+@pytest.mark.parametrize(
+    "name, expected",
+    [("commands", Reaction.UNKNOWN), ("table", Reaction.UNKNOWN), ("found", Reaction.UNKNOWN),
+     ("fixed", Reaction.IGNORED)],
+)  # fmt: skip
+def test_lists_that_are_filled_while_the_node_is_made(tmp_path, name, expected):
+    found, _ = explore_text(FILLED, f"Driver.on_{name}", "std_msgs/Int32", tmp_path)
+    assert {path.result for path in found.paths} == {expected}

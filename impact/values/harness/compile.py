@@ -404,14 +404,18 @@ class Workshop:
         # Its headers come first: the same ones elsewhere would define everything again.
         given = ("-include-pch", str(made), f"-I{made.parent / 'include'}")
         run = self._run([clang, *flags[:at], *given, *flags[at:], *_IR_FLAGS, *rest], folder)
+        if run.status > 0 and "precompiled header" in run.errors:
+            # A macro of the package is another one in it.
+            return self._run([clang, *flags, *_IR_FLAGS, *rest], folder)
         if run.status < 0 or (run.status and (str(made) in run.errors or "PCH file" in run.errors)):
             self._facade.forget(made)
             return self._run([clang, *flags, *_IR_FLAGS, *rest], folder)
         return run
 
     def _find_precompiled(self, unit: SourceUnit, clang: str) -> Path | None:
-        """The facade, compiled once for all units that are compiled alike; None for the others."""
-        if unit.definitions or unit.stubs is None or unit.stubs.flags or unit.stubs.has_hooks or not unit.boost:
+        """The facade, compiled once for all units of a standard, whatever further macros these define, none of which it
+        asks for; None for those that change it."""
+        if unit.stubs is None or unit.stubs.has_hooks or not unit.boost:
             return None
         return self._facade.find_precompiled(clang, [*self._list_macros(unit), *_IR_FLAGS])
 

@@ -30,11 +30,13 @@ _FILE_BYTES = 2_000_000_000
 
 
 class CompilerRun(NamedTuple):
-    """What a compiler said. status: -1 where it was stopped for its time."""
+    """What a compiler said. status: -1 where it was stopped for its time or cannot be run. is_stopped: it had used up
+    its time of the processor."""
 
     status: int
     out: str
     errors: str
+    is_stopped: bool = False
 
 
 class CompilerTime:
@@ -60,6 +62,8 @@ class CompilerTime:
         run = run_compiler(command, folder, processor=max(self.seconds - self.used, 1.0))
         self.used += _measure_children() - start
         self.rounds += 1
+        if run.is_stopped:
+            self.used = max(self.used, self.seconds)
         return run
 
 
@@ -134,5 +138,5 @@ def run_compiler(
     except OSError as error:
         return CompilerRun(-1, "", f"{command[0]}: {error.strerror or error}")
     if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
-        return CompilerRun(-1, "", f"{Path(command[0]).name} was stopped for its time")
+        return CompilerRun(-1, "", f"{Path(command[0]).name} was stopped for its time", is_stopped=True)
     return CompilerRun(done.returncode, done.stdout, done.stderr)

@@ -148,3 +148,23 @@ def list_stored(statement: ast.stmt) -> tuple[tuple[str, ...], tuple[ast.Attribu
         elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
             members.append(node)
     return tuple(names), tuple(members)
+
+
+_LOOKS = frozenset(
+    ("len", "range", "sorted", "enumerate", "zip", "min", "max", "sum", "str", "int", "float", "bool", "print", "list",
+     "tuple", "set", "dict", "isinstance", "any", "all", "repr", "reversed", "map", "filter", "type", "id", "hasattr")
+)  # fmt: skip
+
+
+def list_handed(statement: ast.stmt) -> tuple[ast.expr, ...]:
+    """The names and members that a statement calls methods of or hands to functions: what they hold may be changed in
+    place. What the functions of Python do that only look is left out."""
+    found: list[ast.expr] = []
+    for node in ast.walk(statement):
+        if not isinstance(node, ast.Call):
+            continue
+        if isinstance(node.func, ast.Attribute):
+            found.append(node.func.value)
+        if not (isinstance(node.func, ast.Name) and node.func.id in _LOOKS):
+            found += [*node.args, *(each.value for each in node.keywords)]
+    return tuple(one for one in found if isinstance(one, (ast.Name, ast.Attribute)))

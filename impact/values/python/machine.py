@@ -12,7 +12,7 @@ import z3
 
 from ..outcomes import CodeLine, Sent
 from . import arrays, library, operators, texts
-from .habits import has_yield, list_outer_names, list_stored
+from .habits import has_yield, list_handed, list_outer_names, list_stored
 from .messages import Messages
 from .modules import (
     BoundMethod,
@@ -49,6 +49,7 @@ _DEEPEST = 40
 _LONGEST_ARRAY = 64
 _MISSING = object()
 _PLAIN = (int, float, str, bytes, bool, type(None))
+_CONTAINERS = (ListValue, dict)
 _LOOSE = (*_PLAIN, Whole, Real, Truth, SymbolicText, Opaque)
 """What is any value of its kind where it is not known which it is."""
 
@@ -117,6 +118,22 @@ class PythonMachine:
                 continue
             if isinstance(owner, PythonObject):
                 self._widen(owner, node.attr)
+        for node in list_handed(statement):
+            self._empty(node, scope)
+
+    def _empty(self, node: ast.expr, scope: Scope) -> None:
+        """Lets a list or dictionary hold anything that may have been changed in place."""
+        if isinstance(node, ast.Name):
+            if isinstance(scope.names.get(node.id), _CONTAINERS):
+                scope.names[node.id] = Opaque(node.id)
+            return
+        assert isinstance(node, ast.Attribute)
+        try:
+            owner = self.evaluate(node.value, scope)
+        except (NotModelledError, PythonThrownError):
+            return
+        if isinstance(owner, PythonObject) and isinstance(owner.members.get(node.attr), _CONTAINERS):
+            owner.members[node.attr] = Opaque(f"this.{node.attr}")
 
     def _widen(self, owner: PythonObject, name: str) -> None:
         """Lets a member be any value of its kind; what ROS or the workspace made is kept."""
