@@ -96,3 +96,37 @@ def test_each_message_of_a_synchronizer_has_its_type(tmp_path, asked):
     assert {(path.result, path.crash) for path in found.paths} == {
         (Reaction.CRASH, CrashKind.INDEX), (Reaction.HANDLED, None), (Reaction.IGNORED, None),
     }  # fmt: skip
+
+
+EITHER = """
+#include <rclcpp/rclcpp.hpp>
+#include <std_msgs/msg/int32.hpp>
+class Machine : public rclcpp::Node {
+ public:
+  Machine() : rclcpp::Node("machine") {
+    pub_ = create_publisher<std_msgs::msg::Int32>("out", 1);
+    if (declare_parameter("first", true))
+      sub_ = create_subscription<std_msgs::msg::Int32>("a", 1, [this](const std_msgs::msg::Int32 &m) { onFirst(m); });
+    else
+      sub_ = create_subscription<std_msgs::msg::Int32>("b", 1, [this](const std_msgs::msg::Int32 &m) { onOther(m); });
+  }
+  void onFirst(const std_msgs::msg::Int32 &message) { pub_->publish(message); }
+  void onOther(const std_msgs::msg::Int32 &message) {
+    std_msgs::msg::Int32 out;
+    out.data = 100 / message.data;
+    pub_->publish(out);
+  }
+  rclcpp::Publisher<std_msgs::msg::Int32>::SharedPtr pub_;
+  rclcpp::Subscription<std_msgs::msg::Int32>::SharedPtr sub_;
+};
+int main(int argc, char **argv) { rclcpp::init(argc, argv); rclcpp::spin(std::make_shared<Machine>()); }
+"""
+
+
+@needs_clang
+def test_a_callback_beside_another_is_not_taken_for_it(tmp_path):
+    root = write_workspace(tmp_path / "ws", 2, {"src/machine.cpp": EITHER}, "src/machine.cpp")
+    first, other = Prepared(root, tmp_path / "harness", ("subscriber",)).all
+    said = [explore(one.ir_texts, one.entry, Bounds(seconds=60), one.is_workspace_file) for one in (first, other)]
+    crashes = [{path.crash for path in found.paths} - {None} for found in said]
+    assert crashes == [set(), {CrashKind.DIVISION}]

@@ -42,10 +42,15 @@ class Harness(NamedTuple):
 
 
 class HarnessWriter:
-    """Writes harnesses of a workspace. root: its folder as text."""
+    """Writes harnesses of a workspace. root: its folder as text; known: all callbacks of its code."""
 
-    def __init__(self, reader: ClassReader, root: str, ros: int):
+    def __init__(self, reader: ClassReader, root: str, ros: int, known: Sequence[CppCallback] = ()):
         self.reader, self.root, self.ros = reader, root, ros
+        # Where the callbacks of a kind are given to the framework in a file.
+        self.lines: dict[tuple[str, str], frozenset[int]] = {}
+        for one in known:
+            path, line = one.registered if one.registered[0] else (one.path, one.line)
+            self.lines[one.kind, path] = self.lines.get((one.kind, path), frozenset()) | {line}
 
     def write(self, name: str, source: str, callbacks: Sequence[CppCallback], without: Iterable[str] = ()) -> Harness:
         """The harness of a source file for the callbacks that it subscribes. without: parts that are left out."""
@@ -166,9 +171,12 @@ class HarnessWriter:
 
     def _write_waiting(self, callback: CppCallback) -> list[str]:
         path, line = callback.registered if callback.registered[0] else (callback.path, callback.line)
+        others = sorted(self.lines.get((callback.kind, path), frozenset()) - {line})
         return [
             f'  ri::wanted_kind = "{callback.kind}"; ri::wanted_file = "{path}";',
             f"  ri::wanted_line = {line}; ri::wanted_place = {callback.place};",
+            f"  static const int ri_others[] = {{{''.join(f'{each}, ' for each in others)}0}};",
+            "  ri::other_lines = ri_others;",
         ]
 
     def _run_main(self, callback: CppCallback) -> str:

@@ -133,7 +133,7 @@ class HarnessSession:
 
     @cached_property
     def writer(self) -> HarnessWriter:
-        return HarnessWriter(self.reader, str(self.workshop.root), self.workspace.ros)
+        return HarnessWriter(self.reader, str(self.workshop.root), self.workspace.ros, self.callbacks)
 
     @cached_property
     def callbacks(self) -> list[CppCallback]:

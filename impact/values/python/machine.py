@@ -119,9 +119,9 @@ class PythonMachine:
             if isinstance(owner, PythonObject):
                 self._widen(owner, node.attr)
         for node in list_handed(statement):
-            self._empty(node, scope)
+            self._free_container(node, scope)
 
-    def _empty(self, node: ast.expr, scope: Scope) -> None:
+    def _free_container(self, node: ast.expr, scope: Scope) -> None:
         """Lets a list or dictionary hold anything that may have been changed in place."""
         if isinstance(node, ast.Name):
             if isinstance(scope.names.get(node.id), _CONTAINERS):

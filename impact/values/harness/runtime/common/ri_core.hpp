@@ -468,6 +468,9 @@ inline int wanted_line = 0;
 inline int wanted_nth = 0;
 // Of several messages that a callback is given, the one that is asked about: it is `msg`, the others `msg2` and so on.
 inline int wanted_place = 0;
+// The lines of the other calls in that file that give a callback of the kind, ended by 0: what is nearer to one of these
+// is not the wanted one.
+inline const int *other_lines = nullptr;
 // What comes right before it runs: state is made symbolic and watched.
 inline void (*prepare)(void *) = nullptr;
 inline void *prepare_with = nullptr;
@@ -493,6 +496,10 @@ inline void deliver() {
   for (Given *one = given; one; one = one->next) {
     if (strcmp(one->kind, wanted_kind) != 0 || !ends_alike(one->file, wanted_file)) continue;
     int away = one->line > wanted_line ? one->line - wanted_line : wanted_line - one->line;
+    bool is_other = false;
+    for (const int *each = other_lines; each && *each; ++each)
+      if ((one->line > *each ? one->line - *each : *each - one->line) < away) is_other = true;
+    if (is_other) continue;
     if (away < distance) { distance = away; best = one; nth = wanted_nth; }
     else if (best && away == distance && best->line == one->line && nth > 0) { --nth; best = one; }
   }
