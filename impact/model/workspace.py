@@ -441,6 +441,8 @@ class Workspace:
             return False
         if any("$" in path for g in package.build.generated for path in g.files):
             return False  # generates what another package lists
+        if package.build.starts:
+            return False  # its own scripts may fetch or write headers while it is configured
         return bool(package.linked.headers or package.linked.interfaces) and not calls_unmodelled(package.build)
 
     @cached_property

@@ -112,7 +112,7 @@ _ROS_ENVIRONMENT = re.compile(r"\bENV\{(ROS_(?:DISTRO|VERSION|PYTHON_VERSION))\}
 # What is collected under the names that Build has for it.
 _COLLECTED = (
     *("macros", "found", "installs", "exports", "generated", "uses", "include_dirs", "links", "unresolved", "files"),
-    *("message_files", "made", "from_found", "handed_on", "refused", "read_elsewhere", "asked", "stops"),
+    *("message_files", "made", "starts", "from_found", "handed_on", "refused", "read_elsewhere", "asked", "stops"),
     *("dependency_calls", "compared"),
 )
 
@@ -167,6 +167,7 @@ class Interpreter:
         self.modules: set[str] = set()
         self.guarded: set[str] = set()
         self.made: dict[str, None] = {}
+        self.starts: dict[str, None] = {}
         self.from_found: dict[tuple[str, str], None] = {}
         self.handed_on: dict[FoundPackage, None] = {}
         self.handing_on = False

@@ -311,6 +311,12 @@ def execute_process(run: Interpreter, call: CommandCall, args: list[Word]) -> No
             run.set_unknown(name, call.at)
         else:
             note_written(run, name, folder if folder.startswith("/") else "")
+    begins = [0] if call.name == "exec_program" else [place + 1 for place, word in enumerate(args) if word == "COMMAND"]
+    for begin in begins:
+        for item in args[begin : begin + 2]:  # a program, or what runs a script and the script
+            path = run.make_relative(item) if item.startswith("/") else None
+            if path and run.exists(path):
+                run.starts[path] = None
 
 
 _ANSWERS = make_name_set(
