@@ -803,6 +803,13 @@ class _Linker:
         given = [path for place in self.discovered.packages for path in self.find_extras(place.name)]
         return hashlib.sha1("\n".join(given).encode("utf-8", "surrogateescape")).hexdigest()
 
+    def exists(self, path: str) -> bool | None:
+        """Whether a path is there; None below what was not read, such as a submodule that is not checked out."""
+        if path in self.all_paths:
+            return True
+        above = itertools.accumulate(path.split("/"), "{}/{}".format)
+        return False if self.unread.isdisjoint(above) else None
+
     def join(self, place, before: _Stale | None) -> tuple[LinkedPackage, dict[str, str]]:
         """A linked package, and what files of others say that it rests on. before: a linked package of the very same
         files of its own; where the CMake files of others still say the same, it holds."""
@@ -826,7 +833,7 @@ class _Linker:
             interpret(
                 place.path,
                 read_cmake,
-                self.all_paths.__contains__,
+                self.exists,
                 self.make_glob(files),
                 package=manifest.name,
                 dependencies=_list_named(manifest, "build", "buildtool"),

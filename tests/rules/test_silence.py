@@ -1404,6 +1404,16 @@ def test_own_headers_may_lie_in_a_folder_that_was_not_read(folder, declared, exp
     assert [finding.severity for finding in report.findings if finding.rule == "unsearched-header"] == expected
 
 
+@pytest.mark.parametrize(("folder", "expected"), [("sdk", []), ("sdk/inner", []), ("docs", ["warning"])])
+def test_cmake_does_not_stop_for_what_a_submodule_that_is_not_checked_out_may_have(folder, expected, tmp_path):
+    stop = "if(NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/sdk/inner/lift.h)\n  message(FATAL_ERROR \"fetch it\")\nendif()\n"
+    files = catkin("roscpp", stop + "catkin_package()", "roscpp")
+    files |= {".gitmodules": f'[submodule "s"]\n\tpath = {folder}\n\turl = s.git\n'}
+    rule_cases.write_files(tmp_path, files)
+    report = check(tmp_path, Options(targets=("noetic",), cache=tmp_path / "cache", jobs=1))
+    assert [finding.severity for finding in report.findings if finding.rule == "missing-package-call"] == expected
+
+
 @pytest.mark.parametrize(("folder", "expected"), [("audio_common", []), ("audio", ["warning"])])
 def test_launch_files_start_what_a_submodule_that_is_not_checked_out_may_have(folder, expected, tmp_path):
     launch = '<launch><node pkg="sound_play" exec="soundplay_node.py"/></launch>'

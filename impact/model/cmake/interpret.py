@@ -15,7 +15,7 @@ _FAMILIES = (language, lists, paths, find, targets, install, catkin, catkin_simp
 def interpret(
     package_path: str,
     read: Callable[[str], CMakeFile | None],
-    exists: Callable[[str], bool],
+    exists: Callable[[str], bool | None],
     glob: Callable[[str, bool], list[str]],
     *,
     package: str = "",

@@ -124,7 +124,7 @@ class Interpreter:
         self,
         package_path: str,
         read: Callable[[str], CMakeFile | None],
-        exists: Callable[[str], bool],
+        exists: Callable[[str], bool | None],
         glob: Callable[[str, bool], list[str]],
         package: str,
         declared: DeclaredPackages,
@@ -1119,11 +1119,12 @@ class Interpreter:
         return True if name in self.definitions or (name in COMMANDS and name not in MODULE_OF) else None
 
     def has_path(self, path: str) -> bool | None:
-        """Whether a path of the package exists; None outside of it."""
+        """Whether a path of the package exists; None outside of it, and where that is not known."""
         relative = self.make_relative(path) if path.startswith("/") else None
         if relative is None or not (self.is_in_package(relative) or relative == self.package_path):
             return None
-        return self.exists(relative) or bool(self.glob(f"{relative}/*" if relative else "*", True))
+        known = self.exists(relative)
+        return known if known is None else known or bool(self.glob(f"{relative}/*" if relative else "*", True))
 
     def set_match_groups(self, groups: tuple[str, ...]) -> None:
         """Sets CMAKE_MATCH_<n>."""
