@@ -408,6 +408,14 @@ class WorkspaceOnTarget:
         """True for packages that the configuration calls one's own, or has on every machine."""
         return name in self.config.private or name in self.config.installed
 
+    @cache_method
+    def means_package(self, name: str) -> bool:
+        """Whether a name that is a rosdep key too stands for a package: code of the workspace includes headers below a
+        folder called so, and none of them is known of anything."""
+        includes = (one.path for package in self.workspace for one in package.linked.includes)
+        below = {path for path in includes if path.startswith(f"{name}/")}
+        return bool(below) and not any(map(self.find_header, below))
+
     @cached_property
     def installed(self) -> frozenset[str]:
         """Packages and rosdep keys that every machine has by the configuration, and what is installed with them."""

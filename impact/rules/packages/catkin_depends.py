@@ -10,7 +10,7 @@ Why it breaks
 
 Severity
     error; warning where only another distro's manifest says that the package is a plain CMake one, and yet another's
-    says otherwise.
+    says otherwise, and where code includes headers below a folder called so, of which none is known.
 
 Example
     catkin_package(CATKIN_DEPENDS roscpp tf)    # and package.xml has <build_depend>tf</build_depend> alone
@@ -85,5 +85,5 @@ def _explain_not_catkin(view: TargetView, name: str) -> tuple[str, bool]:
         sure = bool(known) or view.target.list_build_types(name) == {"cmake"}
         return ("cmake", sure) if plain else ("", False)
     if view.target.resolve(name) is not None and not view.underlaid:
-        return "system", True
+        return "system", not view.means_package(name)
     return "", False

@@ -7,7 +7,8 @@ Why it breaks
     CMake stops: catkin looks for the configuration file of a package of that name.
 
 Severity
-    error; warning for components that are not required, and where an underlay may have a package of that name.
+    error; warning for components that are not required, where an underlay may have a package of that name, and where
+    code includes headers below a folder called so, of which none is known.
 
 Example
     find_package(catkin REQUIRED COMPONENTS roscpp bullet)
@@ -47,5 +48,6 @@ def system_library_component(view: TargetView, package: Package):
         key = view.target.resolve(name) is not None
         if not key and not any(p.kind == "system" and view.target.resolve(p.name) for p in view.find_cmake(name)):
             continue
-        doubts = (found.required or Doubt.OPTIONAL, not view.underlaid or Doubt.INCOMPLETE)
+        unsure = view.underlaid or view.means_package(name)
+        doubts = (found.required or Doubt.OPTIONAL, not unsure or Doubt.INCOMPLETE)
         yield Diagnostic(found.at, name, package.name, {"distro": view.target.distro}, doubts=doubts)
