@@ -872,16 +872,20 @@ class _Linker:
         return Changes(surfaces.find_lines, self.asked, surfaces.find_history) if surfaces is not None else None
 
     def list_ignored(self, build: Build, read: dict[str, str]) -> Iterator[str]:
-        """What the package installs and git ignores, so that it is there once it was made. read: as join() returns it,
-        completed by the files that tell."""
-        for install in build.installs:
-            for item in install.items if install.kind in ("files", "programs", "directory") else ():
-                path = posixpath.normpath(item)
-                if "$" in item or path.startswith(("/", "..")) or path in self.all_paths:
-                    continue
-                rules = self._list_ignore_rules(path, read)
-                if rules and (is_ignored(path, rules) or (install.kind == "directory" and holds_ignored(path, rules))):
-                    yield path
+        """What the package installs, compiles or includes in CMake and git ignores, so that it is there once it was
+        made. read: as join() returns it, completed by the files that tell."""
+        named = [
+            (item, one.kind == "directory")
+            for one in build.installs if one.kind in ("files", "programs", "directory") for item in one.items
+        ]  # fmt: skip
+        named += [(one.path, False) for one in build.list_paths() if one.how in ("read", "source", "test")]
+        for item, is_folder in dict.fromkeys(named):
+            path = posixpath.normpath(item)
+            if "$" in item or path.startswith(("/", "..")) or path in self.all_paths:
+                continue
+            rules = self._list_ignore_rules(path, read)
+            if rules and (is_ignored(path, rules) or (is_folder and holds_ignored(path, rules))):
+                yield path
 
     def list_ignored_modules(self, files: list[str], read: dict[str, str]) -> set[str]:
         """Modules that Python files of a package import, that are not there, and that git ignores, so that a generator
