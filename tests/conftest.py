@@ -29,7 +29,7 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 
 
 _FIRST = (
-    "hostile/test_attacks.py", "debian/", "measure/", "test_processes.py", "test_damaged_cache.py",
+    "hostile/test_attacks.py", "debian/", "measure/", "prune/", "values/", "test_processes.py", "test_damaged_cache.py",
     "test_report_cache.py", "test_signals.py", "test_gather.py", "test_surface_command.py", "corpus/test_study.py",
     "packaging/", "targets/test_cluster.py", "test_", "rules/test_other_rules.py", "rules/test_rules.py",
     "rules/test_silence.py", "corpus/", "classifier/",
