@@ -23,6 +23,7 @@ from .elements import SETTING, Elements, ListElement, find_begun
 from .given_lists import GivenLists
 from .graph import How
 from .literals import spell_number
+from .makers import Makers
 from .names import is_open, make_open_part, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
 from .reaching import LOOPS, FlowValue, ReachingValues
@@ -307,7 +308,7 @@ class FlowValues:
 
     def _make_copy(self, *given) -> FlowValues:
         other = FlowValues(self.calls, *given)
-        for name in ("filled", "declared", "command_line", "origins", "parameter_words"):
+        for name in ("filled", "declared", "command_line", "origins", "parameter_words", "makers"):
             other.__dict__[name] = getattr(self, name)
         other._budget, other._decided = self._budget, self._decided
         other._known, other._works, other._asking = self._known, self._works, self._asking
@@ -749,6 +750,17 @@ class FlowValues:
         """Where the code's objects come from."""
         return ObjectOrigins(self.code)
 
+    @cached_property
+    def makers(self) -> Makers:
+        """Who gives base classes their arguments."""
+        return Makers(self.code)
+
+    def limit_to_class(self, fn: Fn) -> FlowValues:
+        """The same in objects of the class of a method alone: what other classes give its bases is not theirs."""
+        owner = self.code.find_owner(fn)
+        made = self.makers.find_inside(owner) if owner is not None and not self.made else {}
+        return self.limit_to_objects(made) if made else self
+
     def evaluate_variable(
         self, variable: Variable, fn: Fn, seen: tuple = (), origins: Origins | None = None, line: int = 0,
         filled_before: int = 0,
@@ -1161,13 +1173,33 @@ class FlowValues:
                 argument = find_argument(arguments, place, parameter.name)
                 given, lacking = given or argument is not None, lacking or argument is None
                 if argument is not None:
-                    yield from self._evaluate(argument, caller, line, seen)
+                    yield from self._evaluate_made(argument, fn, caller, line, seen)
         default = self.code.find_default(fn, place, parameter)
         if default is not None and (lacking or not given):
             yield from self._evaluate(default, fn, fn.facts.line, seen)
         elif not given:
             reason = f"an argument of `{fn.name or 'the module'}`, which nothing here calls"
             yield FlowValue(None, "given", reason, uncalled=self.code.is_idle(fn), unpassed=True)
+
+    def _evaluate_made(self, value: FlowExpr, fn: Fn, maker: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
+        """What a function gives another one: where that makes an object, as it is in the object that the maker is of.
+        fn: whom it is given; maker: who gives it."""
+        outer = self.makers.find_outer(fn, maker, self.made)
+        owner = self.code.find_owner(maker)
+        if outer is None or owner is None:
+            yield from self._evaluate(value, maker, line, seen)
+            return
+        item = ("makes", fn, maker, line)
+        if self._is_in(item, seen):
+            yield FlowValue(None, "unresolved", f"`{maker.name}` makes objects that make it again")
+            return
+        inner = (*self.makers.leave_out(seen, owner), item)
+        if len(inner) <= len(seen) or any(one in self.made for one in outer if outer[one] is not self.made.get(one)):
+            self._note_others()
+        values = self.limit_to_objects(outer)
+        values._left = self._left
+        yield from values._evaluate(value, maker, line, inner)
+        self._left = values._left
 
     def list_given(self, fn: Fn, place: int, name: str) -> Iterator[tuple[FlowExpr, Fn, int]]:
         """What those that run give for a parameter of a function, with who does and at which line."""
