@@ -924,7 +924,10 @@ class FlowValues:
         for each in own:
             if id(each) not in passed and (anew or not again.isdisjoint(fn.list_guards_around(each.guard))):
                 found.add(self._evaluate_written(each, fn, origins, seen))
-        values = found.list_values()
+        values = found.list_chosen(
+            lambda places: _spell_guards([fn.facts.guards[place] for place in places]),
+            lambda place: _spell_guards([fn.facts.guards[place]], negated=True),
+        )
         if found.held and not values:
             yield FlowValue(None, "given", f"`{variable.name}` has no known value that passes the conditions around")
         yield from _restore_alone(values)
@@ -1771,6 +1774,13 @@ def spell_condition(kind: str, text: str) -> str:
         return f"!({text})" if kind == "unless" else text
     path = found[2].replace("->", ".").replace("self.", "this.")
     return path if (kind == "unless") == bool(found[1]) else f"!{path}"
+
+
+def _spell_guards(guards: Sequence[Guard], negated: bool = False) -> str:
+    """The condition under which all of some guards hold, given from the nearest, or do not."""
+    kinds = {"if": "unless", "unless": "if"} if negated else {}
+    asking = [one for one in guards if one.kind in ASKING and not one.text.startswith("catch (")]
+    return " && ".join(spell_condition(kinds.get(one.kind, one.kind), one.text) for one in reversed(asking))
 
 
 def _put_under(values: Iterable[FlowValue], decided: DecidedCondition, condition: str) -> Iterator[FlowValue]:
