@@ -72,6 +72,7 @@ ASKING = frozenset(("if", "unless", "case"))
 # The place of what a loop walks through, and what counts its turns.
 _EACH = FlowExpr("other")
 _COUNTER = "enumerate"
+TOO_MANY = "too many steps"
 WHICH_TURN = "which turn of the loop it is"
 _TOGETHER = "these parts of the name belong together"
 _MEASURES = re.compile(r"([\w.]+)\.size\(\)\Z")
@@ -350,7 +351,7 @@ class FlowValues:
         if self._works:
             self._works[-1].note_depth(_DEEPEST, len(seen))
         if len(seen) > _DEEPEST or self._left < 0:
-            yield FlowValue(None, "unresolved", "too many steps")
+            yield FlowValue(None, "unresolved", TOO_MANY)
             return
         kind = value.kind
         if kind == "number" and value.text[:1] == "'":
@@ -754,6 +755,17 @@ class FlowValues:
     def makers(self) -> Makers:
         """Who gives base classes their arguments."""
         return Makers(self.code)
+
+    def limit_to_held(self, call: FlowCall, fn: Fn) -> FlowValues:
+        """The same in objects of the class of what a method is called on. call: of the method; fn: in which it
+        stands."""
+        head = call.callee.rpartition(".")[0]
+        if head in ("", "this"):
+            return self.limit_to_class(fn)
+        kind = self.code.resolve_name_type(head, fn) if not head.endswith("()") else None
+        cls = self.code.find_class_of(kind, fn) if kind is not None and kind.name else None
+        made = self.makers.find_inside(cls) if cls is not None and not self.made else {}
+        return self.limit_to_objects(made) if made else self
 
     def limit_to_class(self, fn: Fn) -> FlowValues:
         """The same in objects of the class of a method alone: what other classes give its bases is not theirs."""
