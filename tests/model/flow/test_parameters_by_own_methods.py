@@ -1,7 +1,6 @@
 """Parameters that a method of the code's own declares or reads, which is called like one of the framework's."""
 
 from joining import graph, manifest
-
 from rosimpact.impact.model.flow.graph import Graph
 
 HANDLER = """
