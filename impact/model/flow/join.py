@@ -234,8 +234,7 @@ class Join:
             closed = {
                 place
                 for place in self._asking[fn]
-                for _, decided in [next(values.decide_guards(fn, place))]
-                if decided.holds is False and decided.is_given
+                if self._is_shut(running, values, fn, place)
             }
             if closed:
                 facts = fn.facts
@@ -859,9 +858,18 @@ class Join:
         """Whether a node does not come to a call, by what the launch gives that starts it."""
         if not isinstance(owner, Running) or owner.instance is None or use.call.guard < 0:
             return False
-        values = owner.limit_values()
-        decisions = (decided for _, decided in values.decide_guards(use.fn, use.call.guard))
-        return any(decided.holds is False and decided.is_given for decided in decisions)
+        values, fn = owner.limit_values(), use.fn
+        return any(self._is_shut(owner, values, fn, place) for place in fn.list_guards_around(use.call.guard))
+
+    @staticmethod
+    def _is_shut(running: Running, values: FlowValues, fn: Fn, guard: int) -> bool:
+        """Whether a guard does not hold by what a launch gives, whoever starts it. values: in the node."""
+        (_, decided), rests = values.record(lambda: next(values.decide_guards(fn, guard)))
+        if decided.holds is not False or not decided.is_given:
+            return False
+        chosen = running.instance.chosen if running.instance is not None else frozenset[str]()
+        asked = (name for name, value in rests.settings.items() if value is not None) if chosen else ()
+        return not any(values.find_setting_key(name) in chosen for name in asked)
 
     def resolve_name(self, site: Site, value: FlowValue, owner: Owner) -> tuple[str, How, str]:
         """The full name that a site has in a node, how it is known, and why not."""

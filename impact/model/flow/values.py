@@ -1446,6 +1446,10 @@ class FlowValues:
         finally:
             self._asked_prefixes.discard(key)
 
+    def find_setting_key(self, name: str) -> str:
+        """The key among the settings of a parameter by its name in the namespace of its node handle."""
+        return resolve_ros1_name(name, self.node) if self.node else name.lstrip("~").lstrip("/")
+
     def find_setting(self, name: str) -> FlowValue | None:
         """What a launch sets a parameter to; None for nothing. name: in the namespace of its node handle."""
         if not self.node:
