@@ -242,7 +242,8 @@ class Sites:
         """The namespace of the node handle that makes an endpoint, and what its name may be, before the node's own.
         Where there are several namespaces, it is empty, and the names have theirs. values: what expressions are worth
         where it runs."""
-        spaces, names = self._list_spaces(use, values), self._list_written_names(use, values)
+        inside = values.limit_to_class(use.fn)
+        spaces, names = self._list_spaces(use, inside), self._list_written_names(use, inside)
         if len(spaces) > 1 or len(names) > 1 or any(one.reason == WHICH_TURN for one in names):
             ways = self.contexts.list_contexts(use.fn, use.call.guard, values)
             if len(ways) > 1:

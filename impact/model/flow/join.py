@@ -18,7 +18,7 @@ from ..launch.result import EMPTY, Launched, ShareLine, Started
 from ..launch.text import LaunchText
 from . import nodes as programs_of
 from .calls import FOREIGN, Calls, FrameworkCall
-from .code import CodeFile, FlowCode, Fn, find_argument, get_tail, list_made
+from .code import CodeFile, FlowCode, Fn, find_argument, find_parameter, get_tail, list_made
 from .defined import DefinedInterfaces
 from .endpoints import Site, Sites, Statement, unparse
 from .frameworks import Frameworks, load_frameworks
@@ -58,7 +58,7 @@ from .plugin_hosts import PluginHosts, select_own
 from .qos import apply_overrides, find_qos, list_overridable
 from .started import Instance, make_instance
 from .types import FlowType, parse_flow_type
-from .values import ASKING, FlowValue, FlowValues, Work, spell_condition
+from .values import ASKING, TOO_MANY, FlowValue, FlowValues, Work, spell_condition
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _OVERRIDES = re.compile(r"qos_overrides\.").match
@@ -234,8 +234,7 @@ class Join:
             closed = {
                 place
                 for place in self._asking[fn]
-                for _, decided in [next(values.decide_guards(fn, place))]
-                if decided.holds is False and decided.is_given
+                if self._is_shut(running, values, fn, place)
             }
             if closed:
                 facts = fn.facts
@@ -722,23 +721,35 @@ class Join:
                 )
 
     def _list_parameters(self, owners: _Owners, count: _Count) -> Iterator[ParameterUse]:
-        for use in self._uses_of_parameters:
-            those = owners.list_owners(use)
-            made = list(self._make_parameters(use, those))
-            for owner in those if made else ():
-                owners.use(owner)
-            values = self.list_parameter_names(use)
-            if those and not any(value.text for value in values):
-                reasons = [value.reason for value in values]
-                reason = reasons[0] if reasons else "no name is given"
-                written = unparse(self.calls.find_argument(use, use.row.topic))
-                count.unresolved.append(Unresolved("parameter name", reason, *_get_place(use), written))
-            yield from made
+        for use in self.calls.select_uses("parameter"):
+            for place, values in self._list_asked(use):
+                those = owners.list_owners(place, () if place is use else (use,))
+                made = list(self._make_parameters(use, place, values, those))
+                for owner in those if made else ():
+                    owners.use(owner)
+                if those and not any(value.text for value in values):
+                    reasons = [value.reason for value in values]
+                    reason = reasons[0] if reasons else "no name is given"
+                    written = unparse(self.calls.find_argument(use, use.row.topic))
+                    count.unresolved.append(Unresolved("parameter name", reason, *_get_place(place), written))
+                yield from made
 
-    @cached_property
-    def _uses_of_parameters(self) -> list[FrameworkCall]:
-        uses = self.calls.select_uses("parameter")
-        return [use for use in uses if not self.sites.wraps(use.fn, "parameter") or not self._is_asked_by_callers(use)]
+    def _list_asked(self, use: FrameworkCall) -> Iterator[tuple[FrameworkCall, list[FlowValue]]]:
+        """Where the parameter of a use is asked for, with its names: by those that call a function which is called like
+        the framework's, where these calls are no uses themselves; else where the use stands."""
+        if not self.sites.wraps(use.fn, "parameter") or not self._is_asked_by_callers(use):
+            yield use, self.list_parameter_names(use)
+            return
+        argument = self.calls.find_argument(use, use.row.topic)
+        lost: list[FlowValue] = []
+        for caller, call in self.code.callers.get(use.fn, ()):
+            own = self.calls.find_use(caller, call)
+            if caller is not use.fn and (own is None or own.row.does != "parameter"):
+                values = self.values.limit_to_held(call, caller).limit_to_calls({use.fn: call})
+                found = lost or values.evaluate(argument, use.fn, use.call.line)
+                if any(one.reason == TOO_MANY for one in found):
+                    lost = found  # nor is it known for the others, at the same cost each
+                yield use._replace(fn=caller, call=call), found
 
     def _is_asked_by_callers(self, use: FrameworkCall) -> bool:
         """Whether what a function called like the framework's reads is what its callers name: for one without a class,
@@ -847,9 +858,18 @@ class Join:
         """Whether a node does not come to a call, by what the launch gives that starts it."""
         if not isinstance(owner, Running) or owner.instance is None or use.call.guard < 0:
             return False
-        values = owner.limit_values()
-        decisions = (decided for _, decided in values.decide_guards(use.fn, use.call.guard))
-        return any(decided.holds is False and decided.is_given for decided in decisions)
+        values, fn = owner.limit_values(), use.fn
+        return any(self._is_shut(owner, values, fn, place) for place in fn.list_guards_around(use.call.guard))
+
+    @staticmethod
+    def _is_shut(running: Running, values: FlowValues, fn: Fn, guard: int) -> bool:
+        """Whether a guard does not hold by what a launch gives, whoever starts it. values: in the node."""
+        (_, decided), rests = values.record(lambda: next(values.decide_guards(fn, guard)))
+        if decided.holds is not False or not decided.is_given:
+            return False
+        chosen = running.instance.chosen if running.instance is not None else frozenset[str]()
+        asked = (name for name, value in rests.settings.items() if value is not None) if chosen else ()
+        return not any(values.find_setting_key(name) in chosen for name in asked)
 
     def resolve_name(self, site: Site, value: FlowValue, owner: Owner) -> tuple[str, How, str]:
         """The full name that a site has in a node, how it is known, and why not."""
@@ -930,17 +950,29 @@ class Join:
             self._asked[id(use)] = known
         return known
 
-    def _make_parameters(self, use: FrameworkCall, owners: list[Owner]) -> Iterator[ParameterUse]:
+    def _make_parameters(
+        self, use: FrameworkCall, place: FrameworkCall, values: list[FlowValue], owners: list[Owner]
+    ) -> Iterator[ParameterUse]:
+        """The parameters of a use. place: where they are asked for; values: their names."""
         if not owners:
             return
-        values = self.list_parameter_names(use)
-        default = unparse(self.calls.find_argument(use, use.row.default)) if use.row.default else ""
+        given = self.calls.find_argument(use, use.row.default) if use.row.default else None
+        default = unparse(given if place is use else self._find_passed(given, use.fn, place.call))
         kind = "declared" if use.row.declares else "read"
         nodes = {node.id if node else "": None for node in (_get_node(owner) for owner in owners)}
         names = [value.text for value in values if value.text] or [self._spell_parameter_in_part(use)]
         for name in filter(None, names):
             for node in nodes:
-                yield ParameterUse(node, name, kind, *_get_place(use), default)
+                yield ParameterUse(node, name, kind, *_get_place(place), default)
+
+    @staticmethod
+    def _find_passed(value: FlowExpr | None, fn: Fn, call: FlowCall) -> FlowExpr | None:
+        """What a call of a function gives for a value in it, where that is one of its parameters, as such or within an
+        object; else the value."""
+        held = value is not None and value.kind in ("make", "call") and len(value.parts) == 1
+        inner = value.parts[0] if value is not None and held else value
+        found = find_parameter(fn, inner.text) if inner is not None and inner.kind == "name" else None
+        return find_argument(call.arguments, found[0], found[1].name) if found is not None else value
 
     def _spell_parameter_in_part(self, use: FrameworkCall) -> str:
         """The name of a parameter with brackets for what is not known of it; empty where none of it is known."""

@@ -86,14 +86,36 @@ class ReachingValues:
         """Values come to those that were assigned before."""
         self.held += [Held(rank, value, guard, stays) for value in values]
 
+    def list_chosen(self, spell: Callable[[Sequence[int]], str], negate: Callable[[int], str]) -> list[FlowValue]:
+        """What is left; of several texts each with the condition under which it is assigned here, or is not replaced.
+        spell: the condition that some guards of the function are, from the nearest; negate: that of one that does not
+        hold."""
+        found = self._list_left()
+        if len({one.value.text for one in found if one.value.text is not None}) < 2:
+            return [one.value for one in found]
+        chosen: list[FlowValue] = []
+        for one in found:
+            guards = self._list_conditional(one.guard)
+            condition = spell(guards)
+            if not one.stays and not guards:
+                later = [other for other in found if other.value.text not in (None, one.value.text) and not other.stays]
+                others = dict.fromkeys(guard for other in later for guard in self._list_conditional(other.guard)[:1])
+                condition = " && ".join(filter(None, map(negate, others)))
+            known = one.value.text is not None and not one.value.only_if
+            chosen.append(one.value._replace(only_if=condition) if known and condition else one.value)
+        return chosen
+
     def list_values(self) -> list[FlowValue]:
         """What is left, as far as the conditions around the place allow it."""
+        return [one.value for one in self._list_left()]
+
+    def _list_left(self) -> list[Held]:
         found = self.held
         for guard in self.around:
             test = self.find_test(guard)
             if test is not None:
                 found = [h for h in found if self._is_inside(h.guard, guard) or _may_hold(test, h.value)]
-        return [one.value for one in sorted(found, key=lambda one: one.rank)]
+        return sorted(found, key=lambda one: one.rank)
 
     def find_test(self, guard: int) -> VariableTest | None:
         """What a guard asks of the variable."""

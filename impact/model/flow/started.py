@@ -151,13 +151,15 @@ def follow_workspace_launch(
 class Instance(NamedTuple):
     """A node as a launch starts it. name: full. settings: values of its parameters; in ROS 1 of all on the parameter
     server, by their global names. uncertain: why its name, or whether it is started at all, is not sure. What is not
-    known of names and values stands in brackets (`/<$ROBOT>/camera`)."""
+    known of names and values stands in brackets (`/<$ROBOT>/camera`). chosen: the settings that rest on the default of
+    a launch argument."""
 
     started: Started
     name: str
     settings: Mapping[str, str]
     remaps: tuple[Remap, ...]
     uncertain: tuple[str, ...]
+    chosen: frozenset[str] = frozenset()
 
     def remap_name(self, name: str, ros: int, kind: str = "topic") -> str:
         """A name as the code has it, after the remappings of this start; full. It is known in part where a remapping
@@ -193,7 +195,8 @@ def make_instance(all_started: Launched, own_name: str, started: Started, own_na
     given = all_started.server if one else all_started.collect_parameters(started, full)
     settings = {key: _fill_setting(one, started) for key, one in given.items()}
     uncertain = (*started.conditions, *(r for r in (*started.name.reasons, *started.namespace.reasons) if r))
-    return Instance(started, full, settings, started.remaps, uncertain)
+    chosen = frozenset(key for key, one in given.items() if one.text.chosen)
+    return Instance(started, full, settings, started.remaps, uncertain, chosen)
 
 
 def _fill_setting(one: LaunchParameter, started: Started) -> str:

@@ -23,6 +23,7 @@ from .elements import SETTING, Elements, ListElement, find_begun
 from .given_lists import GivenLists
 from .graph import How
 from .literals import spell_number
+from .makers import Makers
 from .names import is_open, make_open_part, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
 from .reaching import LOOPS, FlowValue, ReachingValues
@@ -71,6 +72,7 @@ ASKING = frozenset(("if", "unless", "case"))
 # The place of what a loop walks through, and what counts its turns.
 _EACH = FlowExpr("other")
 _COUNTER = "enumerate"
+TOO_MANY = "too many steps"
 WHICH_TURN = "which turn of the loop it is"
 _TOGETHER = "these parts of the name belong together"
 _MEASURES = re.compile(r"([\w.]+)\.size\(\)\Z")
@@ -307,7 +309,7 @@ class FlowValues:
 
     def _make_copy(self, *given) -> FlowValues:
         other = FlowValues(self.calls, *given)
-        for name in ("filled", "declared", "command_line", "origins", "parameter_words"):
+        for name in ("filled", "declared", "command_line", "origins", "parameter_words", "makers"):
             other.__dict__[name] = getattr(self, name)
         other._budget, other._decided = self._budget, self._decided
         other._known, other._works, other._asking = self._known, self._works, self._asking
@@ -349,7 +351,7 @@ class FlowValues:
         if self._works:
             self._works[-1].note_depth(_DEEPEST, len(seen))
         if len(seen) > _DEEPEST or self._left < 0:
-            yield FlowValue(None, "unresolved", "too many steps")
+            yield FlowValue(None, "unresolved", TOO_MANY)
             return
         kind = value.kind
         if kind == "number" and value.text[:1] == "'":
@@ -749,6 +751,28 @@ class FlowValues:
         """Where the code's objects come from."""
         return ObjectOrigins(self.code)
 
+    @cached_property
+    def makers(self) -> Makers:
+        """Who gives base classes their arguments."""
+        return Makers(self.code)
+
+    def limit_to_held(self, call: FlowCall, fn: Fn) -> FlowValues:
+        """The same in objects of the class of what a method is called on. call: of the method; fn: in which it
+        stands."""
+        head = call.callee.rpartition(".")[0]
+        if head in ("", "this"):
+            return self.limit_to_class(fn)
+        kind = self.code.resolve_name_type(head, fn) if not head.endswith("()") else None
+        cls = self.code.find_class_of(kind, fn) if kind is not None and kind.name else None
+        made = self.makers.find_inside(cls) if cls is not None and not self.made else {}
+        return self.limit_to_objects(made) if made else self
+
+    def limit_to_class(self, fn: Fn) -> FlowValues:
+        """The same in objects of the class of a method alone: what other classes give its bases is not theirs."""
+        owner = self.code.find_owner(fn)
+        made = self.makers.find_inside(owner) if owner is not None and not self.made else {}
+        return self.limit_to_objects(made) if made else self
+
     def evaluate_variable(
         self, variable: Variable, fn: Fn, seen: tuple = (), origins: Origins | None = None, line: int = 0,
         filled_before: int = 0,
@@ -912,7 +936,10 @@ class FlowValues:
         for each in own:
             if id(each) not in passed and (anew or not again.isdisjoint(fn.list_guards_around(each.guard))):
                 found.add(self._evaluate_written(each, fn, origins, seen))
-        values = found.list_values()
+        values = found.list_chosen(
+            lambda places: _spell_guards([fn.facts.guards[place] for place in places]),
+            lambda place: _spell_guards([fn.facts.guards[place]], negated=True),
+        )
         if found.held and not values:
             yield FlowValue(None, "given", f"`{variable.name}` has no known value that passes the conditions around")
         yield from _restore_alone(values)
@@ -1161,13 +1188,33 @@ class FlowValues:
                 argument = find_argument(arguments, place, parameter.name)
                 given, lacking = given or argument is not None, lacking or argument is None
                 if argument is not None:
-                    yield from self._evaluate(argument, caller, line, seen)
+                    yield from self._evaluate_made(argument, fn, caller, line, seen)
         default = self.code.find_default(fn, place, parameter)
         if default is not None and (lacking or not given):
             yield from self._evaluate(default, fn, fn.facts.line, seen)
         elif not given:
             reason = f"an argument of `{fn.name or 'the module'}`, which nothing here calls"
             yield FlowValue(None, "given", reason, uncalled=self.code.is_idle(fn), unpassed=True)
+
+    def _evaluate_made(self, value: FlowExpr, fn: Fn, maker: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
+        """What a function gives another one: where that makes an object, as it is in the object that the maker is of.
+        fn: whom it is given; maker: who gives it."""
+        outer = self.makers.find_outer(fn, maker, self.made)
+        owner = self.code.find_owner(maker)
+        if outer is None or owner is None:
+            yield from self._evaluate(value, maker, line, seen)
+            return
+        item = ("makes", fn, maker, line)
+        if self._is_in(item, seen):
+            yield FlowValue(None, "unresolved", f"`{maker.name}` makes objects that make it again")
+            return
+        inner = (*self.makers.leave_out(seen, owner), item)
+        if len(inner) <= len(seen) or any(one in self.made for one in outer if outer[one] is not self.made.get(one)):
+            self._note_others()
+        values = self.limit_to_objects(outer)
+        values._left = self._left
+        yield from values._evaluate(value, maker, line, inner)
+        self._left = values._left
 
     def list_given(self, fn: Fn, place: int, name: str) -> Iterator[tuple[FlowExpr, Fn, int]]:
         """What those that run give for a parameter of a function, with who does and at which line."""
@@ -1398,6 +1445,10 @@ class FlowValues:
             return self.find_prefix(use, self)
         finally:
             self._asked_prefixes.discard(key)
+
+    def find_setting_key(self, name: str) -> str:
+        """The key among the settings of a parameter by its name in the namespace of its node handle."""
+        return resolve_ros1_name(name, self.node) if self.node else name.lstrip("~").lstrip("/")
 
     def find_setting(self, name: str) -> FlowValue | None:
         """What a launch sets a parameter to; None for nothing. name: in the namespace of its node handle."""
@@ -1739,6 +1790,13 @@ def spell_condition(kind: str, text: str) -> str:
         return f"!({text})" if kind == "unless" else text
     path = found[2].replace("->", ".").replace("self.", "this.")
     return path if (kind == "unless") == bool(found[1]) else f"!{path}"
+
+
+def _spell_guards(guards: Sequence[Guard], negated: bool = False) -> str:
+    """The condition under which all of some guards hold, given from the nearest, or do not."""
+    kinds = {"if": "unless", "unless": "if"} if negated else {}
+    asking = [one for one in guards if one.kind in ASKING and not one.text.startswith("catch (")]
+    return " && ".join(spell_condition(kinds.get(one.kind, one.kind), one.text) for one in reversed(asking))
 
 
 def _put_under(values: Iterable[FlowValue], decided: DecidedCondition, condition: str) -> Iterator[FlowValue]:

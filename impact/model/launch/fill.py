@@ -191,7 +191,15 @@ class Filling:
         maker = _FILLING.get(piece.kind.replace("-", "_"))
         if maker is None or len(piece.parts) < _PARTS.get(piece.kind, 0):
             return make_unknown(piece.kind, f"`{piece.kind}` is not filled in")
-        return maker(self, piece)
+        text = maker(self, piece)
+        return text if text.chosen or not self._is_chosen(piece) else text._replace(chosen=True)
+
+    def _is_chosen(self, piece: ValuePart) -> bool:
+        """Whether a launch argument of a substitution has its default, as LaunchText has it."""
+        if piece.kind == "arg":
+            text = self.scope.arguments.get(self.evaluate_named(piece)[0].value or "")
+            return text is not None and text.chosen
+        return any(self._is_chosen(inner) for part in piece.parts for inner in part)
 
     def evaluate_named(self, piece: ValuePart) -> tuple[LaunchText, tuple[Value, ...]]:
         """A piece's name, and its other parts."""

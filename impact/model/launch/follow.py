@@ -218,7 +218,7 @@ class _Launch(Filling):
                 reason = f"argument `{name}` has no default and is not given"
                 self.scope.arguments[name] = make_unknown(f"{name}", reason)
             else:
-                self.set(name, self.fill(default))
+                self.set(name, self.fill(default)._replace(chosen=True))
         elif default is not None and name in self.scope.maybe:
             before, text = self.scope.maybe.pop(name), self.fill(default)
             if before.value is None or before.value != text.value:

@@ -19,11 +19,13 @@ LONGEST = 100_000
 
 class LaunchText(NamedTuple):
     """A text as far as it is known. value: None where it is not. shown: what is known of it, the rest as `<...>`.
-    reasons: why it is not known."""
+    reasons: why it is not known. chosen: whether it rests on the default of a launch argument, for which whoever starts
+    the launch may give another value."""
 
     value: str | None
     shown: str
     reasons: tuple[str, ...] = ()
+    chosen: bool = False
 
 
 def wrap(value: str) -> LaunchText:
@@ -42,7 +44,7 @@ def join_texts(texts: Sequence[LaunchText], between: str = "") -> LaunchText:
     if value is not None and len(value) > LONGEST:
         return make_unknown("...", "is too long")
     shown = value if value is not None else between.join(t.shown for t in texts)[:LONGEST]
-    return LaunchText(value, shown, merge_reasons(t.reasons for t in texts))
+    return LaunchText(value, shown, merge_reasons(t.reasons for t in texts), any(t.chosen for t in texts))
 
 
 def resolve(namespace: LaunchText, name: LaunchText) -> LaunchText:

@@ -1,0 +1,75 @@
+"""Who gives the constructors of base classes their arguments: in objects of one class it is not what other classes that
+derive from the same base give."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from ....edges.memory import cache_method
+from .code import FlowCode, Fn, Made, Variable
+from .types import Cls
+
+
+class Makers:
+    """Asks a body of code who gives the constructors of base classes their arguments."""
+
+    def __init__(self, code: FlowCode):
+        self.code = code
+
+    @cache_method
+    def find_inside(self, cls: Cls) -> Mapping[Fn, Sequence[Made]]:
+        """By constructor of a base of a class, who gives it its arguments in objects of the class and of those that
+        derive from it; without those where nothing tells."""
+        inside = {one.key for each in (cls, *self.code.derived.get(cls.key, ())) for one in self.code.list_bases(each)}
+        own = {id(row[1]) for key in inside for row in self.code.constructions.get(key, ())}
+        found: dict[Fn, Sequence[Made]] = {}
+        for one in self.code.list_bases(cls)[1:]:
+            for fn in self.code.list_functions(one):
+                if fn.is_lambda or not self.code.is_constructor(fn):
+                    continue
+                callers = ((caller, call.arguments, call.line) for caller, call in self.code.callers.get(fn, ()))
+                every = [*callers, *self.code.list_constructed(fn)]
+                # An object of the base itself is none of the class.
+                itself = {id(row[1]) for row in self.code.constructions.get(one.key, ())}
+                rows = [row for row in every if self._is_of(row[0], inside) or id(row[1]) in own]
+                rows = [row for row in rows if id(row[1]) not in itself]
+                if rows:
+                    found[fn] = rows
+        return found
+
+    def _is_of(self, fn: Fn, keys: set[str]) -> bool:
+        owner = self.code.find_owner(fn)
+        return owner is not None and owner.key in keys
+
+    def find_outer(self, fn: Fn, maker: Fn, made: Mapping[Fn, Sequence[Made]]) -> Mapping[Fn, Sequence[Made]] | None:
+        """Who gives constructors their arguments in the object that a function is of; None where that is told already.
+        fn: what the function calls, or the constructor of what it makes; maker: the function; made: what is told."""
+        cls, around = self.code.find_owner(fn), self.code.find_owner(maker)
+        if around is None or (cls is not None and cls in self.code.list_bases(around)):
+            return None
+        inside = self.find_inside(around)
+        if all(self._is_within(made.get(one), rows) for one, rows in inside.items()):
+            return None
+        return {**made, **{one: rows for one, rows in inside.items() if not self._is_within(made.get(one), rows)}}
+
+    @staticmethod
+    def _is_within(told: Sequence[Made] | None, rows: Sequence[Made]) -> bool:
+        return told is not None and all(row in rows for row in told)
+
+    @cache_method
+    def list_own(self, cls: Cls) -> frozenset[Fn]:
+        """The functions of a class and of its bases."""
+        return frozenset(fn for one in self.code.list_bases(cls) for fn in self.code.list_functions(one))
+
+    def leave_out(self, seen: tuple, cls: Cls) -> tuple:
+        """What is being evaluated, without what is of an object of a class: it may be asked for in another one."""
+        keys = {one.key for one in self.code.list_bases(cls)}
+        functions = self.list_own(cls)
+        places = {fn.place for fn in functions}
+
+        def is_own(item: object) -> bool:
+            if isinstance(item, Variable):
+                return item.owner in (keys if item.kind == "member" else places)
+            return isinstance(item, tuple) and item[0] == "returns" and item[1] in functions
+
+        return tuple(item for item in seen if not is_own(item))
