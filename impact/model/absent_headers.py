@@ -106,7 +106,7 @@ def is_nowhere(view: TargetView, package: Package, include: IncludeUse) -> bool:
 
 def may_be_made(package: Package, name: str) -> bool:
     """Whether configuring or building may write a file of this name."""
-    return calls_unmodelled(package.build) or is_made(package, name)
+    return bool(package.build.starts) or calls_unmodelled(package.build) or is_made(package, name)
 
 
 def is_made(package: Package, name: str) -> bool:
