@@ -1414,6 +1414,13 @@ def test_cmake_does_not_stop_for_what_a_submodule_that_is_not_checked_out_may_ha
     assert [finding.severity for finding in report.findings if finding.rule == "missing-package-call"] == expected
 
 
+@pytest.mark.parametrize(("ignored", "expected"), [("made.cmake", []), ("other.cmake", ["error"])])
+def test_cmake_may_include_what_git_ignores(ignored, expected, tmp_path):
+    rule_cases.write_files(tmp_path, {**ament("include(made.cmake)"), ".gitignore": f"{ignored}\n"})
+    report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
+    assert [finding.severity for finding in report.findings if finding.rule == "nonexistent-path"] == expected
+
+
 @pytest.mark.parametrize(("folder", "expected"), [("audio_common", []), ("audio", ["warning"])])
 def test_launch_files_start_what_a_submodule_that_is_not_checked_out_may_have(folder, expected, tmp_path):
     launch = '<launch><node pkg="sound_play" exec="soundplay_node.py"/></launch>'
