@@ -659,6 +659,19 @@ class FlowCode:
         """Calls whose result a variable keeps."""
         return self._results.select_rows(variable, self._identify_declared)
 
+    def list_resets(self, variable: Variable) -> Sequence[tuple[Fn, FlowExpr]]:
+        """What `variable.reset(...)` is given, with the function that calls it."""
+        return self._resets.get(variable, ())
+
+    @cached_property
+    def _resets(self) -> dict[Variable, list[tuple[Fn, FlowExpr]]]:
+        found: dict[Variable, list[tuple[Fn, FlowExpr]]] = {}
+        for fn, call in self.list_calls_named(("reset",)):
+            if "." in call.callee and call.arguments:
+                variable = self.identify(call.callee.rpartition(".")[0], fn)
+                found.setdefault(variable, []).append((fn, call.arguments[0]))
+        return found
+
     def list_passed(self, variable: Variable) -> Sequence[tuple[Fn, FlowCall, int]]:
         """Calls of functions of the code that a variable is passed to, with the argument's number."""
         return self._passed.select_rows(variable, self.identify)

@@ -814,15 +814,6 @@ class Sites:
         return found.pop() if len(found) == 1 else LOST
 
     @cached_property
-    def _resets(self) -> dict[Variable, list[tuple[Fn, FlowExpr]]]:
-        found: dict[Variable, list[tuple[Fn, FlowExpr]]] = {}
-        for fn, call in self.code.list_calls_named(("reset",)):
-            if "." in call.callee and call.arguments:
-                variable = self.code.identify(call.callee.rpartition(".")[0], fn)
-                found.setdefault(variable, []).append((fn, call.arguments[0]))
-        return found
-
-    @cached_property
     def kept(self) -> dict[Variable, list[Site]]:
         """Publishers by the variable that keeps them."""
         return group_pairs(
@@ -918,7 +909,7 @@ class Sites:
         if found:
             yield from found
         wrapped = [(writer, each.value) for writer, each in code.list_writes(variable)]
-        for writer, value in [*wrapped, *self._resets.get(variable, ())]:
+        for writer, value in [*wrapped, *self.code.list_resets(variable)]:
             # `RealtimePublisher(publisher)`
             if value.kind == "make" and self._is_publisher(value, writer):
                 for part in value.parts:

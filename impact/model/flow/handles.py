@@ -180,7 +180,7 @@ class NodeHandles:
             else:
                 yield from self._list_made(call.arguments, caller, call.line, values, seen)
         if not kept:
-            for caller, given in self._select_running(self._resets.get(variable, []), values):
+            for caller, given in self._select_running(self.code.list_resets(variable), values):
                 yield from self._list_spaces(given, caller, 0, values, seen)
 
     def _makes_node(self, written: str, fn: Fn) -> bool:
@@ -255,7 +255,7 @@ class NodeHandles:
         """A function of each file that includes the header of a variable, and sets it."""
         found: dict[str, Fn] = {}
         for copy in self.code.list_copies(variable):
-            rows = (*self.code.list_writes(copy), *self.code.list_results(copy), *self._resets.get(copy, ()))
+            rows = (*self.code.list_writes(copy), *self.code.list_results(copy), *self.code.list_resets(copy))
             found.update((copy.owner, setter) for setter, _ in rows)
         return list(found.values())
 
@@ -264,15 +264,6 @@ class NodeHandles:
         own = value.kind == "call" and get_tail(value.text).endswith("NodeHandle")
         known = self.calls.find_kinds(self.code.resolve_type(value, fn), fn)
         return _LOST if "handle" in known and not own else _OWN
-
-    @cached_property
-    def _resets(self) -> dict[Variable, list[tuple[Fn, FlowExpr]]]:
-        found: dict[Variable, list[tuple[Fn, FlowExpr]]] = {}
-        for fn, call in self.code.list_calls_named(("reset",)):
-            if "." in call.callee and call.arguments:
-                variable = self.code.identify(call.callee.rpartition(".")[0], fn)
-                found.setdefault(variable, []).append((fn, call.arguments[0]))
-        return found
 
     def _list_made(
         self, arguments: tuple[FlowExpr, ...], fn: Fn, line: int, values: FlowValues, seen: tuple[Variable, ...]

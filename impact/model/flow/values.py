@@ -36,8 +36,6 @@ NODE, NAMESPACE = "{node}", "{ns}"
 LOST = "?"
 """Begins the namespace of a node handle that is not known."""
 _MOST = 12
-# Of loops whose turns are looked at one by one.
-_MOST_TURNS = 64
 _DEEPEST = 12
 _FAR = 6
 # Names that are known in part, of one endpoint.
