@@ -21,14 +21,12 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-import msgspec
-
-from ..edges.files import write_file
 from ..impact.targets.providers.apt import INFERRED, AptGraph
 from ..impact.targets.providers.providers import Providers
 from ..impact.targets.snapshot import load_snapshot
 from ..impact.targets.tables import DATA
 from .providers import read_dependencies, read_keys
+from .table_file import write_table
 
 BASE = "build-essential"
 """What every machine that builds Debian packages has (Debian policy 4.2)."""
@@ -106,8 +104,7 @@ def build_graph(
 
 def main(arguments: list[str] | None = None) -> None:
     """The command line described at the top."""
-    import zstandard
-
+    
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--suite", action="append", default=[], help='"debian bookworm=LISTS"')
     parser.add_argument("--output", type=Path, default=DATA)
@@ -119,9 +116,8 @@ def main(arguments: list[str] | None = None) -> None:
         print(platform, len(suites[platform]), "packages", flush=True)
     keys = frozenset(name for names in read_keys(load_snapshot()).debian.values() for name in names)
     made = build_graph(suites, keys, infer_packages(Providers(given.output).list_provider_groups()))
-    packed = zstandard.ZstdCompressor(level=19).compress(msgspec.json.encode(made))
-    write_file(given.output / "apt.json.zst", packed)
-    print(len(made.packages), "packages,", sum(map(len, made.brings.values())), "relations,", len(packed), "bytes")
+    size = write_table(given.output / "apt.json.zst", made)
+    print(len(made.packages), "packages,", sum(map(len, made.brings.values())), "relations,", size, "bytes")
 
 
 if __name__ == "__main__":

@@ -15,14 +15,12 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 
-import msgspec
-
-from ..edges.files import write_file
 from ..impact.targets.providers.archive import FILE, ArchiveTable
 from ..impact.targets.providers.providers import Providers
 from ..impact.targets.snapshot import load_snapshot
 from ..impact.targets.tables import DATA
 from .providers import list_ros_packages, read_keys, read_names
+from .table_file import write_table
 
 
 def build_table(
@@ -62,8 +60,7 @@ def find_lacking(providers: Providers) -> dict[str, set[str]]:
 
 def main(arguments: list[str] | None = None) -> None:
     """The command line described at the top."""
-    import zstandard
-
+    
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--suite", action="append", default=[], help='"debian bookworm=LISTS"')
     parser.add_argument("--output", type=Path, default=DATA)
@@ -77,9 +74,8 @@ def main(arguments: list[str] | None = None) -> None:
     wanted = {name for names in read_keys(load_snapshot()).debian.values() for name in names}
     wanted -= of_ros
     made = build_table(suites, wanted, find_lacking(Providers(given.output)))
-    packed = zstandard.ZstdCompressor(level=19).compress(msgspec.json.encode(made))
-    write_file(given.output / FILE, packed)
-    print(sum(len(names.split()) for names in made.packages.values()), "packages of", len(wanted), len(packed), "bytes")
+    size = write_table(given.output / FILE, made)
+    print(sum(len(names.split()) for names in made.packages.values()), "packages of", len(wanted), size, "bytes")
 
 
 if __name__ == "__main__":

@@ -20,10 +20,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
 
-import msgspec
-import zstandard
-
-from ..edges.files import write_file
 from ..impact.facts.cmake import Command, extract
 from ..impact.targets.providers.components import FILE, ComponentTable
 from ..impact.targets.tables import DATA
@@ -32,6 +28,7 @@ from ..impact.tree import Tree, TreeError
 from .libraries import extract_upstream_version
 from .surface.clones import Clone, VersionError
 from .surface.unpacked_deb import DebError, read_members
+from .table_file import write_table
 
 _PACKAGES = {"VTK": "libvtk9-dev"}
 """CMake packages that list their components, and who installs them."""
@@ -167,9 +164,8 @@ def main(arguments: list[str] | None = None) -> None:
     of_suites = {**before.by_platform, **read_suites(suites, given.work)}
     clones = sorted(given.clones.glob("gazebosim+*")) if given.clones is not None else []
     always = {**before.always, **read_gazebo(clones)}
-    raw = msgspec.json.encode(ComponentTable(of_suites, always))
-    write_file(file, zstandard.ZstdCompressor(level=19).compress(raw))
-    print(len(of_suites) + len(always), "packages,", len(raw), "bytes")
+    size = write_table(file, ComponentTable(of_suites, always))
+    print(len(of_suites) + len(always), "packages,", size, "bytes")
 
 
 if __name__ == "__main__":

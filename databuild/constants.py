@@ -17,10 +17,6 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-import msgspec
-import zstandard
-
-from ..edges.files import write_file
 from ..impact.facts.cpp import flow as cpp
 from ..impact.facts.flow import DataMember, FlowFile
 from ..impact.facts.python import flow as python
@@ -31,6 +27,7 @@ from ..impact.targets.tables import DATA
 from ..impact.tree import Tree, TreeError
 from .surface.clones import Clone, Clones
 from .surfaces import plan
+from .table_file import write_table
 
 _HEADERS = (".h", ".hpp", ".hh", ".hxx", ".ipp", ".tpp")
 _PACKAGE = re.compile(rb"<name>\s*([\w-]+)\s*</name>")
@@ -154,8 +151,7 @@ def build_table(read: Iterable[Constant]) -> ReleasedConstants:
 def main(arguments: list[str]) -> None:
     """Writes the table."""
     table = build_table(read_clones(Clones(Path(os.path.abspath(arguments[0]))), load_snapshot()))
-    packed = zstandard.ZstdCompressor(level=19).compress(msgspec.json.encode(table))
-    write_file(DATA / "constants.json.zst", packed)
+    write_table(DATA / "constants.json.zst", table)
 
 
 if __name__ == "__main__":

@@ -18,14 +18,11 @@ from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
-import msgspec
-import zstandard
-
-from ..edges.files import write_file
 from ..impact.facts.interface import PRIMITIVES, Interface, extract
 from ..impact.targets.snapshot import load_snapshot
 from ..impact.targets.version import parse
 from .surface.releases import find_git_directory
+from .table_file import write_table
 
 # One member of an interface: section, name, nested type (`*` behind it for arrays; `!` for constants), written type.
 Member = tuple[str, str, str, str]
@@ -264,7 +261,7 @@ def main(arguments: list[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     wanted = frozenset(name for (name,) in load_snapshot().fetch("SELECT name FROM package"))
     found = build_table(read_folder(given.repositories, wanted))
-    write_file(given.output, zstandard.ZstdCompressor(level=19).compress(msgspec.json.encode(found)))
+    write_table(given.output, found)
     print(f"{given.output}: {len(found)} packages", file=sys.stderr)
     return 0
 

@@ -13,10 +13,6 @@ import sys
 import tempfile
 from pathlib import Path
 
-import msgspec
-import zstandard
-
-from ..edges.files import write_file
 from ..edges.groups import group_pairs
 from ..impact.analysis.session import open_tree
 from ..impact.facts.store import Store
@@ -27,6 +23,7 @@ from ..impact.targets.tables import DATA
 from ..impact.targets.version import parse
 from .git import BuildError, open_repository
 from .surface.releases import find_git_directory
+from .table_file import write_table
 
 _RELEASE = re.compile(r"refs/tags/(3\.\d+\.\d+)\Z")
 
@@ -55,8 +52,7 @@ def _list_topics(rows: list[Endpoint]) -> tuple[GazeboTopic, ...]:
 def main(arguments: list[str]) -> None:
     """Writes the table."""
     table = build_table(Path(arguments[0]) / "ros-simulation+gazebo_ros_pkgs")
-    packed = zstandard.ZstdCompressor(level=19).compress(msgspec.json.encode(table))
-    write_file(DATA / "gazebo_topics.json.zst", packed)
+    write_table(DATA / "gazebo_topics.json.zst", table)
 
 
 if __name__ == "__main__":

@@ -16,10 +16,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import msgspec
-import zstandard
-
-from ..edges.files import write_file
 from ..impact.facts.cmake import extract
 from ..impact.targets.gz_systems import PREFIXES, GzSystems
 from ..impact.targets.tables import DATA
@@ -27,6 +23,7 @@ from ..impact.targets.version import parse
 from .git import BuildError, open_repository
 from .surface.releases import find_git_directory
 from .surface_file import find_spans
+from .table_file import write_table
 
 _RELEASE = re.compile(rf"refs/tags/(?P<prefix>{'|'.join(PREFIXES)})\d*_(?P<version>\d+\.\d+\.\d+)\Z")
 _VENDOR = re.compile(r"refs/tags/upstream/(?P<version>\d+\.\d+\.\d+)\Z")
@@ -89,9 +86,7 @@ def main(arguments: list[str]) -> None:
     """Writes the table."""
     clones = Path(arguments[0])
     table = build_table(clones / "gazebosim+gz-sim", clones / "ros2-gbp+gz_sim_vendor-release")
-    write_file(
-        DATA / "gz_systems.json.zst", zstandard.ZstdCompressor(level=19).compress(msgspec.json.encode(table))
-    )
+    write_table(DATA / "gz_systems.json.zst", table)
 
 
 if __name__ == "__main__":

@@ -18,9 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
-import zstandard
 
-from ..edges.files import write_file
 from ..impact.conditions import Environment, evaluate_all
 from ..impact.facts import kinds
 from ..impact.facts.cpp.lexical import scan
@@ -38,6 +36,7 @@ from .surface.package import link_build, list_compiled
 from .surface.releases import normalize_url
 from .surface_file import find_spans
 from .surfaces import plan
+from .table_file import write_table
 
 _LIBRARY = "behaviortree/behaviortree.cpp"
 _NOTHING_KNOWN = Environment()
@@ -187,8 +186,7 @@ def _pack_versions(versions: dict[str, tuple[TreeNodes, tuple[str, ...]]], kept:
 def main(arguments: list[str]) -> None:
     """Writes the table."""
     table = build_table(read_clones(Clones(Path(os.path.abspath(arguments[0]))), load_snapshot()))
-    packed = zstandard.ZstdCompressor(level=19).compress(msgspec.json.encode(table))
-    write_file(DATA / "tree_nodes.json.zst", packed)
+    write_table(DATA / "tree_nodes.json.zst", table)
 
 
 if __name__ == "__main__":
