@@ -59,8 +59,8 @@ class Contexts:
             yield from self._list_nearest(around, values)
             return
         called = [row for row in self.code.callers.get(fn, ()) if values.runs(row[0])]
-        told = bool(fn.facts.parameters) or any(self._find_receiver(*row) is not None for row in called)
-        if self.code.is_constructor(fn) or not told or not called:
+        differs = bool(fn.facts.parameters) or any(self._find_receiver(*row) is not None for row in called)
+        if self.code.is_constructor(fn) or not differs or not called:
             yield from self._list_objects(fn, values, None)
             return
         for caller, call in called if fn not in values.way else ():
@@ -68,7 +68,7 @@ class Contexts:
             others = self._find_others(fn, held) if held is not None else {}
             inside = values.limit_to_calls({**others, **values.way, fn: call})
             objects = list(self._list_objects(fn, inside, held)) if held is not None else []
-            # Where its object is made tells no more of who calls it.
+            # Who calls it does not follow from where its object is made.
             for _, limited in objects or [(caller, inside)]:
                 yield from ((caller, turn) for turn in self._list_turns(caller, call.guard, limited))
 
@@ -91,7 +91,7 @@ class Contexts:
 
     def _list_objects(self, fn: Fn, values: FlowValues, held: Variable | None) -> Iterator[tuple[Fn, FlowValues]]:
         """The objects in which a method runs, with who makes them. held: the variable that holds them, None for any;
-        those that are made elsewhere than where it is written are not told apart then."""
+        those that are made elsewhere than where it is written are not distinguished then."""
         owner = self.code.find_owner(fn)
         if owner is None:
             return
@@ -107,7 +107,7 @@ class Contexts:
             chain = self.code.list_bases(cls)
             constructors = [one for each in chain for one in self.code.list_functions(each) if self._begins(one)]
             if any(one in values.made for one in constructors):
-                continue  # it is told already which objects these are
+                continue  # it is known already which objects these are
             limited = values.limit_to_objects({**values.made, **self.find_made(chain, [row])})
             guard = max(row[0].collect_guards(row[2]), default=-1)
             yield from ((row[0], turn) for turn in self._list_turns(row[0], guard, limited))

@@ -19,7 +19,7 @@ class Makers:
     @cache_method
     def find_inside(self, cls: Cls) -> Mapping[Fn, Sequence[Made]]:
         """By constructor of a base of a class, who gives it its arguments in objects of the class and of those that
-        derive from it; without those where nothing tells."""
+        derive from it; without those where it is not known."""
         inside = {one.key for each in (cls, *self.code.derived.get(cls.key, ())) for one in self.code.list_bases(each)}
         own = {id(row[1]) for key in inside for row in self.code.constructions.get(key, ())}
         found: dict[Fn, Sequence[Made]] = {}
@@ -42,8 +42,8 @@ class Makers:
         return owner is not None and owner.key in keys
 
     def find_outer(self, fn: Fn, maker: Fn, made: Mapping[Fn, Sequence[Made]]) -> Mapping[Fn, Sequence[Made]] | None:
-        """Who gives constructors their arguments in the object that a function is of; None where that is told already.
-        fn: what the function calls, or the constructor of what it makes; maker: the function; made: what is told."""
+        """Who gives constructors their arguments in the object that a function is of; None where that is known already.
+        fn: what the function calls, or the constructor of what it makes; maker: the function; made: what is known."""
         cls, around = self.code.find_owner(fn), self.code.find_owner(maker)
         if around is None or (cls is not None and cls in self.code.list_bases(around)):
             return None
@@ -53,8 +53,8 @@ class Makers:
         return {**made, **{one: rows for one, rows in inside.items() if not self._is_within(made.get(one), rows)}}
 
     @staticmethod
-    def _is_within(told: Sequence[Made] | None, rows: Sequence[Made]) -> bool:
-        return told is not None and all(row in rows for row in told)
+    def _is_within(known: Sequence[Made] | None, rows: Sequence[Made]) -> bool:
+        return known is not None and all(row in rows for row in known)
 
     @cache_method
     def list_own(self, cls: Cls) -> frozenset[Fn]:

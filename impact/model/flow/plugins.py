@@ -1,9 +1,9 @@
 """Plugins in the nodes that load them, as parameter files and launch files say.
 
 A parameter `<name>.plugin` (navigation2, MoveIt, costmaps), or `plugin`, makes the node that has it load a class into
-itself; what programs of the workspace load is told by their code, see plugin_hosts.py. A
-parameter `<name>.type` of a controller manager makes it load a controller, which is a node of its own of that name, in
-the manager's namespace. Source: nav2's "Configuration Guide", ros2_control's "Controller Manager".
+itself; what programs of the workspace load follows from their code, see plugin_hosts.py. A parameter `<name>.type` of a
+controller manager makes it load a controller, which is a node of its own of that name, in the manager's namespace.
+Source: nav2's "Configuration Guide", ros2_control's "Controller Manager".
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ def _list_loads(path: str, file: ParameterFile | None) -> Iterator[tuple[str, Pl
 
 def assign_plugins(graph: Graph, loads: Mapping[str, Iterable[PluginLoad]]) -> Graph:
     """A graph with each of its plugins in the nodes that load it, by class; those that nothing loads stay. Where its
-    code tells already that a node loads it, it is there."""
+    code shows already that a node loads it, it is there."""
     hosts = group_pairs((program, node.name) for node in graph.nodes for program in node.loads)
     placed: dict[str, tuple[Node, tuple[PluginLoad, ...]]] = {}
     for node in graph.nodes:

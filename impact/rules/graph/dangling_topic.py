@@ -96,7 +96,7 @@ def _find_loose_pairs(flow: Flow, system: Flow, launch: Launch, workspace: Works
 
 
 def _is_mentioned(topic: str, launch: Launch) -> bool:
-    """Whether a program outside of the workspace is told a topic."""
+    """Whether a program outside of the workspace is given a topic's name."""
     last = topic.rpartition("/")[2]
     return any(last in text for text in launch.told)
 
@@ -108,7 +108,7 @@ def _is_near_miss(taker: Sure, giver: Sure) -> bool:
 
 
 def _matches_by_name(taker: Sure, giver: Sure) -> bool:
-    """Whether the names of two sides tell that they were one."""
+    """Whether the names of two sides show that they were one."""
     one, other = taker.endpoint, giver.endpoint
     if one.code_name and one.code_name == other.code_name:
         return True
