@@ -243,7 +243,9 @@ class _Hull:
             if not math.isfinite(following) or following == value:
                 break
             value = following
-        return self._search_end(value, limit, predicate)
+        else:
+            return self._search_end(value, limit, predicate, is_asking=True)
+        return self._search_end(value, limit, predicate, is_asking=False)
 
     def _get_limit(self, predicate: str) -> Number:
         bits = self.collected.bits
@@ -254,12 +256,17 @@ class _Hull:
             return -(1 << (bits - 1)) if predicate == "lt" else (1 << (bits - 1)) - 1
         return 0 if predicate == "lt" else (1 << bits) - 1
 
-    def _search_end(self, value: Number, limit: Number, predicate: str) -> Number:
-        """Between a value that is there and one that need not be: what bounds do not exclude is kept."""
-        inside, outside = self._make_key(value), self._make_key(limit)
+    def _search_end(self, value: Number, limit: Number, predicate: str, is_asking: bool) -> Number:
+        """Between a value that is there and one that need not be: what bounds do not exclude is kept. is_asking: nor
+        the solver, as long as it answers."""
+        outside = self._make_key(limit)
+        inside = self._make_key(value) + (1 if predicate == "lt" else -1)  # So that the value itself may be the end.
         while abs(outside - inside) > 1:
             middle = (inside + outside) // 2
-            if self._is_excluded(self._compare(predicate, self._read_key(middle))):
+            beyond = self._compare(predicate, self._read_key(middle))
+            answer = self._ask(beyond) if is_asking else None if self._is_excluded(beyond) else True
+            is_asking = is_asking and answer is not True
+            if answer is None:
                 outside = middle
             else:
                 inside = middle

@@ -2,6 +2,7 @@
 
 import pytest
 from ir_programs import FOLDER, compile_program, explore_entry, needs_clang
+from rosimpact.impact.values import sent_values
 from rosimpact.impact.values.evaluate import evaluate
 from rosimpact.impact.values.outcomes import InputKind
 from rosimpact.impact.values.projection import format_values
@@ -33,3 +34,13 @@ def test_constants_clamps_and_guards_bound_what_is_sent(entry, published):
     start = next(number for number, line in enumerate(lines) if f"void run_{entry}(" in line)
     expected = next(number for number, line in enumerate(lines) if number > start and "pub.publish(" in line) + 1
     assert [place.line for place in through.places] == [expected]
+
+
+@needs_clang
+@pytest.mark.parametrize("entry", ["guarded", "converted"])
+def test_ends_are_found_where_the_solver_names_small_steps(entry, published, monkeypatch):
+    """Which of many answers z3 gives hangs on what it was asked before: one step stands for many small ones."""
+    monkeypatch.setattr(sent_values, "_STEPS", 1)
+    (through,) = evaluate(explore_entry(published, entry), {}, 600).sent
+    (sent,) = through.fields
+    assert format_values(sent.values) == f"{EXPECTED[entry][1].removesuffix(' (relational)')} (relational)"

@@ -114,7 +114,7 @@ class Ranges:
         kind = term.decl().kind()
         bits = term.sort().ebits() + term.sort().sbits()
         parts = [self._float_spans[child.get_id()][1] for child in term.children() if z3.is_fp(child)]
-        if kind == z3.Z3_OP_FPA_TO_FP:
+        if kind in (z3.Z3_OP_FPA_TO_FP, z3.Z3_OP_FPA_TO_FP_UNSIGNED):
             return self._derive_conversion(term, parts, bits)
         if kind == z3.Z3_OP_ITE:
             return self._derive_choice(term, {}, 4)
@@ -166,6 +166,8 @@ class Ranges:
             return self._known.get(name, _ANY_FLOAT)
         if z3.is_bv(last):
             span = self.find_span(last)
+            if term.decl().kind() == z3.Z3_OP_FPA_TO_FP_UNSIGNED:
+                span = _make_unsigned(span, last.size())
             if abs(span.low) < 1 << 53 and abs(span.high) < 1 << 53:
                 return FloatSpan(round_float(float(span.low), bits), round_float(float(span.high), bits), False)
         return _ANY_FLOAT
