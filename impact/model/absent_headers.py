@@ -99,6 +99,9 @@ def is_nowhere(view: TargetView, package: Package, include: IncludeUse) -> bool:
     direct = {*view.collect_declared(package), *(one.name for one in build.found), *passed}
     if path.startswith("."):
         return True
+    own = (view.workspace.packages[one] for one in direct if one in view.workspace.packages)
+    if any(may_be_made(one, name) for one in own):
+        return False
     # A header that lies deeper than the exported folders of most packages is known by the surface of its own alone.
     brought = view.build_environment(package).union(direct)
     return all(_has_known_headers(view, one) for one in direct) and not view.offers.list_packages_with(path, brought)
