@@ -9,6 +9,7 @@ import itertools
 import posixpath
 import re
 from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence
+from fnmatch import fnmatchcase
 from functools import cache, cached_property, partial
 from typing import TYPE_CHECKING, Any
 
@@ -630,6 +631,7 @@ class PackageJoin:
         # Python files that run since a launch file or script of the package starts them, and what they import.
         self.started: set[str] = set()
         self.interpreted: set[str] = set()
+        self.setup: tuple[tuple[str, SetupFile], ...] = ()
         self.macros = Macros((), ())
         self.unresolved_receivers = 0
 
@@ -732,6 +734,10 @@ class PackageJoin:
                 programs = (p for p, f in python.items() if f.interpreter and not _is_part(f))
                 names.update(posixpath.basename(p) for p in programs if self.find_role(p) is None)
             self.start_scripts(python, names)
+        elif self.build_type == "ament_python":
+            self.setup = tuple(setup)
+            own = (reference for _, reference in references if reference.package == self.name)
+            self.start_scripts(python, {posixpath.basename(reference.name) for reference in own})
         table = self.watched.in_cpp
         if table.patterns or table.words:
             self.searched = self.look(self.cpp, "searched_cpp", table)
@@ -1812,6 +1818,8 @@ class PackageJoin:
             return "aside"
         if role is None and is_vendored(inside) and self._is_left_out(path):
             return "aside"
+        if role is None and path not in self.started and self._is_left_by_setup(path):
+            return "aside"
         return role or ("run" if path in self.started or self.is_installed(path) else "aside")
 
     def _is_left_out(self, path: str) -> bool:
@@ -1822,6 +1830,29 @@ class PackageJoin:
             return False
         items = (posixpath.normpath(item) if item else "" for rule in self.build.installs for item in rule.items)
         return not any(not item or f"{path}/".startswith(f"{item}/") for item in items)
+
+    def _is_left_by_setup(self, path: str) -> bool:
+        """Whether a setup.py of which all is known that it installs leaves a Python file out: it is in no package or
+        module of Python that may be installed, no data_files and no script. Launch files are started where they lie."""
+        folder = posixpath.dirname(path)
+        own = [file for place, file in self.setup if posixpath.dirname(place) == self.path]
+        if self.build_type != "ament_python" or not any(file.packages or file.entry_points for file in own):
+            return False
+        if f"{folder}/__init__.py" in self.files or path.endswith((".launch.py", "_launch.py")):
+            return False
+        inside = self.strip_prefix(path)
+        if inside.startswith((f"{self.name}/", "launch/")) or "/" not in inside:
+            return False
+        if any(file.problems or file.namespaces for file in own):
+            return False
+        if any(clause.startswith(_INSTALLING) for file in own for clause in file.unresolved):
+            return False
+        modules = (file.list_module_paths(self.path, name) for file in own for name in file.packages)
+        if any(path == module or folder == posixpath.dirname(below) for module, below in modules):
+            return False
+        copied = (one for file in own for one in (*(pattern for _, pattern, _ in file.data_files), *file.scripts))
+        patterns = map(posixpath.normpath, copied)
+        return not any(fnmatchcase(inside, one) or inside.startswith(f"{one}/") for one in patterns)
 
     def is_run_as_test(self, path: str) -> bool:
         """True for Python files of tests that the build runs, or may run: whatever lies in a folder of one, and modules
@@ -1886,6 +1917,8 @@ class PackageJoin:
         return self.build_type == "catkin" and inside.startswith("src/") and self.prefix + "setup.py" in self.files
 
 
+# Arguments of setup() that say what is installed, as unresolved clauses begin.
+_INSTALLING = ("packages", "package_dir", "py_modules", "data_files", "scripts", "arguments", "written")
 # Commands that may run tests, besides those that the interpreter knows and those of linters.
 _MAY_TEST = re.compile(r"\A(?!ament_|catkin_add|roslaunch_add|add_(?:launch|ros)).*test")
 _BUILT = re.compile(r"\$\{(?:\w*BINARY_DIR|CATKIN_DEVEL_PREFIX)\}")
