@@ -135,9 +135,10 @@ def _has_known_headers(view: TargetView, name: str) -> bool:
 
 @cache_in_derived
 def _list_file_names(view: TargetView) -> frozenset[str]:
-    """The names of all files of the workspace."""
+    """The names of all files of the workspace, and those that they are installed as."""
     files = (path for package in view.workspace for path in package.linked.files)
-    return frozenset(path.rpartition("/")[2] for path in files)
+    names = {path.rpartition("/")[2] for path in files}
+    return frozenset(names.union(rule.rename for package in view.workspace for rule in package.build.installs))
 
 
 def _find_other_ending(package: Package, path: str, includer: str) -> str | None:

@@ -11,8 +11,8 @@ Why it breaks
 Severity
     error where a target is linked or given under a name that only the missing find_package defines, and for includes of
     compiled code where the package has an include folder of its own; warning for other includes, since an include path
-    may come along by accident, or a function of another package may find it, and for those of tests; note for libraries, for headers of messages in ROS 1, and in
-    files that the package itself does not compile.
+    may come along by accident, or a function of another package may find it, and for those of tests; note for
+    libraries, for headers of messages in ROS 1, and in files that the package itself does not compile.
 
 Example
     ament_target_dependencies(node angles)      # and no find_package(angles REQUIRED)

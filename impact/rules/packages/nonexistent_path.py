@@ -14,9 +14,9 @@ Why it breaks
     package. A launch file stops when it opens the file.
 
 Severity
-    error for files that a build reads; warning for tests, under a condition, where the build downloads something or what is
-    run while configuring may write files, for paths that exist only in some places, and for files that launch files open; note for files outside of a package that
-    was never released.
+    error for files that a build reads; warning for tests, under a condition, where the build downloads something or
+    what is run while configuring may write files, for paths that exist only in some places, and for files that launch
+    files open; note for files outside of a package that was never released.
 
 Example
     add_executable(sled_node src/sled_nod.cpp)
