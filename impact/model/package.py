@@ -1189,7 +1189,7 @@ class PackageJoin:
         needed: list[NeededHeader] = []
         watched = self.watched
         # What the package defines itself is its own, whatever a library of that name did.
-        defined = {name for facts in self.cpp.values() for name in facts.defined}
+        defined = {name for facts in self.cpp.values() for name in facts.defined}.union(self.own_constants)
         for path, (role, public, targets, conditions) in roles.items():
             facts = self.cpp.get(path)
             if facts is None:
@@ -1257,13 +1257,20 @@ class PackageJoin:
         macro = f"{space.upper()}_"
         return space not in self.spaces and not any(macro in facts.words for facts in self.cpp.values())
 
+    @property
+    def own_constants(self) -> frozenset[str]:
+        """Words of a table that the package calls constants of its own, as macros are called."""
+        words = (word for found in self.searched.values() for word in found.words)
+        return frozenset(word.text for word in words if word.own and word.text.isupper())
+
     def list_defined_names(self) -> Iterator[str]:
         """Macros and types that the package defines and that somebody asks about: names of a table, and those in a
         namespace that is called like another package, one whose versions are stored or a declared one."""
         asked, surfaces = self.watched.in_tables, self.watched.surfaces
         stored = surfaces.packages if surfaces is not None else frozenset()
         declared = {dependency.name for dependency in self.manifest.dependencies}
-        for name in {name for facts in self.cpp.values() for name in (*facts.defined, *facts.types)}:
+        names = {name for facts in self.cpp.values() for name in (*facts.defined, *facts.types)}
+        for name in names.union(self.own_constants):
             head = name.partition("::")[0]
             if name in asked or (head != self.name and (head in stored or head in declared)):
                 yield name
