@@ -3,7 +3,7 @@ derive from the same base give."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from ....edges.memory import cache_method
 from .code import FlowCode, Fn, Made, Variable
@@ -41,16 +41,17 @@ class Makers:
         owner = self.code.find_owner(fn)
         return owner is not None and owner.key in keys
 
-    def find_outer(self, fn: Fn, maker: Fn, made: Mapping[Fn, Sequence[Made]]) -> Mapping[Fn, Sequence[Made]] | None:
-        """Who gives constructors their arguments in the object that a function is of; None where that is known already.
-        fn: what the function calls, or the constructor of what it makes; maker: the function; made: what is known."""
+    def find_outer(
+        self, fn: Fn, maker: Fn, find_makers: Callable[[Fn], Sequence[Made] | None]
+    ) -> dict[Fn, Sequence[Made]]:  # fmt: skip
+        """Who gives constructors their arguments in the object that a function is of, where that is not known already.
+        fn: what the function calls, or the constructor of what it makes; maker: the function; find_makers: what is
+        known."""
         cls, around = self.code.find_owner(fn), self.code.find_owner(maker)
         if around is None or (cls is not None and cls in self.code.list_bases(around)):
-            return None
-        inside = self.find_inside(around)
-        if all(self._is_within(made.get(one), rows) for one, rows in inside.items()):
-            return None
-        return {**made, **{one: rows for one, rows in inside.items() if not self._is_within(made.get(one), rows)}}
+            return {}
+        rows = self.find_inside(around).items()
+        return {one: inside for one, inside in rows if not self._is_within(find_makers(one), inside)}
 
     @staticmethod
     def _is_within(known: Sequence[Made] | None, rows: Sequence[Made]) -> bool:
