@@ -658,10 +658,6 @@ class FlowValues:
         if value.kind not in ("name", "call"):
             return
         if self._works:
-            self._works[-1].note_depth(_FAR, len(seen) - self._outer)
-        if len(seen) - self._outer > _FAR:
-            return
-        if self._works:
             self._works[-1].is_open = bool(self.settings or self.arguments)
         if not self.settings:
             return

@@ -19,7 +19,8 @@ ZONES = """
         return true;
       }
     protected:
-      bool read(std::string & topic) {
+      bool read(std::string & topic) { return read_common(topic); }
+      bool read_common(std::string & topic) {
         topic = node_->declare_parameter(name_ + ".topic", name_);
         return true;
       }
