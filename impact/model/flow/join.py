@@ -754,16 +754,20 @@ class Join:
     def _list_asked(self, use: FrameworkCall) -> list[list[FlowValue]]:
         """The names of the parameter of a use in each place where it is asked for; the same in every node."""
         argument = self.calls.find_argument(use, use.row.topic)
-        lost: list[FlowValue] = []
+        # By what is known of who makes the objects, which is the same for all methods of a class.
+        lost: dict[int, list[FlowValue]] = {}
         names: list[list[FlowValue]] = []
         for place in self._list_askers(use):
             if place is use:
                 names.append(self.list_parameter_names(use))
                 continue
-            values = self.values.limit_to_held(place.call, place.fn).limit_to_calls({use.fn: place.call})
-            found = lost or values.evaluate(argument, use.fn, use.call.line)
+            held = self.values.limit_to_held(place.call, place.fn)
+            objects = id(held.made) if held.made else 0
+            found = lost.get(objects) or held.limit_to_calls({use.fn: place.call}).evaluate(
+                argument, use.fn, use.call.line
+            )
             if any(one.reason == TOO_MANY for one in found):
-                lost = found  # nor is it known for the others, at the same cost each
+                lost[objects] = found  # nor is it known for others in these objects, at the same cost each
             names.append(found)
         return names
 

@@ -17,7 +17,7 @@ from ...facts.python.flow_expressions import LONGEST_OTHER, make_join
 from ...facts.python.text import format_pieces
 from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
-from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number
+from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number, select_overloads
 from .conditions import ConditionReader, DecidedCondition, is_truth
 from .elements import SETTING, Elements, ListElement, find_begun
 from .given_lists import GivenLists
@@ -343,17 +343,15 @@ class FlowValues:
 
     def list_values(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
         """The same with all that is not known."""
-        most = _MOST_STEPS if self._budget[0] > 0 else _FEW_STEPS
-        self._left = most
-        found = list(dict.fromkeys(self._evaluate(value, fn, line, ())))
-        self._budget[0] -= most - max(self._left, 0)
-        return found
+        self._left = _MOST_STEPS if self._budget[0] > 0 else _FEW_STEPS
+        return list(dict.fromkeys(self._evaluate(value, fn, line, ())))
 
     def _evaluate(self, value: FlowExpr | None, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         if value is None:
             yield FlowValue(None, "unresolved", "no value is given")
             return
         self._left -= 1
+        self._budget[0] -= 1
         if self._works:
             self._works[-1].note_depth(_DEEPEST, len(seen) - self._outer)
         if len(seen) - self._outer > _DEEPEST or self._left < 0:
@@ -914,14 +912,17 @@ class FlowValues:
             _is_of_parameters(passed_on) and self._is_passed_before(variable, fn, filled_before)
         )
         # In Python that is an assignment too.
-        if not begun and not given and not remade and (not rows or fn.source.facts.language == "cpp"):
+        elsewhere = any("." in each.target.removeprefix("this.") for _, each in rows)
+        replaced = elsewhere and self.makers.is_replaced(variable)
+        begins = not rows or (fn.source.facts.language == "cpp" and not replaced)
+        if not begun and not given and not remade and begins:
             found.add(self._evaluate_beginning(variable, fn, seen), rank=0)
         for writer, others in group_pairs(row for row in rows if row[0] is not fn or not line).items():
             if remade and writer is not fn and self.code.is_constructor(writer):
                 continue
             if self.find_makers(writer) is not None and self._is_made_otherwise(writer):
                 continue
-            found.add(self._evaluate_elsewhere(variable, writer, others, filled, origins, seen), stays=True)
+            found.add(self._evaluate_outside(variable, writer, others, filled, origins, seen), stays=True)
         here = [(use, values) for use, values in filled if use.fn is fn and use.call.line < line]
         for use, values in filled:
             if not (use.fn is fn and use.call.line < line):
@@ -1013,6 +1014,20 @@ class FlowValues:
         may = [row for row in rows if not self.command_line.excludes(row[0], row[1].guard, self.arguments)]
         given = [row for row in may if self.command_line.is_option_given(row[0], row[1].guard, self.arguments)]
         return given or may, bool(given)
+
+    def _evaluate_outside(
+        self, variable: Variable, writer: Fn, rows: list[Assignment],
+        filled: list[tuple[FrameworkCall, list[FlowValue]]], origins: Origins | None, seen: tuple,
+    ) -> list[FlowValue]:  # fmt: skip
+        """What a function writes into a variable, as it is in the object that the function is of."""
+        mark = ("writes", variable, writer)
+        inside = self._step_out(variable.owner, mark, writer, seen) if variable.kind == "member" else None
+        if inside is None or self._is_in(mark, seen):
+            return self._evaluate_elsewhere(variable, writer, rows, filled, origins, seen)
+        values, inner = inside
+        found = values._evaluate_elsewhere(variable, writer, rows, filled, origins, inner)
+        self._left = values._left
+        return found
 
     def _evaluate_elsewhere(
         self, variable: Variable, writer: Fn, rows: list[Assignment],
@@ -1214,21 +1229,31 @@ class FlowValues:
     def _evaluate_made(self, value: FlowExpr, fn: Fn, maker: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         """What a function gives another one: where that makes an object, as it is in the object that the maker is of.
         fn: whom it is given; maker: who gives it."""
-        outer = self.makers.find_outer(fn, maker, self.find_makers)
-        owner = self.code.find_owner(maker)
-        if not outer or owner is None:
+        cls = self.code.find_owner(fn)
+        mark = ("makes", fn, maker, line)
+        inside = self._step_out(cls.key if cls is not None else "", mark, maker, seen)
+        if inside is None:
             yield from self._evaluate(value, maker, line, seen)
             return
-        item = ("makes", fn, maker, line)
-        if self._is_in(item, seen):
+        if self._is_in(mark, seen):
             yield FlowValue(None, "unresolved", f"`{maker.name}` makes objects that make it again")
             return
-        inner = (*self.makers.leave_out(seen, owner), item)
+        values, inner = inside
+        yield from values._evaluate(value, maker, line, inner)
+        self._left = values._left
+
+    def _step_out(self, key: str, mark: tuple, fn: Fn, seen: tuple) -> tuple[FlowValues, tuple] | None:
+        """The same in objects of the class of a function, and what is being evaluated there; None where these are the
+        objects that it is about, or no others are known. key: of the class whose objects it is about."""
+        owner = self.code.find_owner(fn)
+        outer = self.makers.find_outer(key, owner, self.find_makers) if owner is not None else None
+        if not outer or owner is None:
+            return None
+        inner = (*self.makers.leave_out(seen, owner), mark)
         values = self.limit_to_objects({**self.made, **outer})
         # What is left out, and the mark, change nothing of how deep it is.
         values._left, values._outer = self._left, self._outer + len(inner) - len(seen)
-        yield from values._evaluate(value, maker, line, inner)
-        self._left = values._left
+        return values, inner
 
     def list_given(self, fn: Fn, place: int, name: str) -> Iterator[tuple[FlowExpr, Fn, int]]:
         """What those that run give for a parameter of a function, with who does and at which line."""
@@ -1401,12 +1426,14 @@ class FlowValues:
                 yield from self._evaluate(call.arguments[0], fn, line, seen)
                 return
         returned = False
-        for target in self.code.list_targets(callee, fn):
+        only = near[0] if near and arguments is not None else None
+        targets = self.code.list_targets(callee, fn)
+        for target in targets if only is None else select_overloads(targets, only, fn):
             if self._is_in(("returns", target), seen):
                 continue
             inner = (*seen, ("returns", target))
             # Through this call alone, where it is seen.
-            values = self.limit_to_calls({**self.way, target: near[0]} if near and arguments is not None else {})
+            values = self.limit_to_calls({**self.way, target: only} if only is not None else {})
             values._left = self._left
             for each in target.facts.assignments:
                 if each.operator == "return":
