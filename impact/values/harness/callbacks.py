@@ -19,6 +19,10 @@ from ...model.workspace import Package, Workspace
 
 _KINDS = {"subscriber": "subscriber", "server": "service", "action server": "action"}
 _DEEPEST = 4
+_POINTED = re.compile(
+    r"(?:const\s+)?(?:(?:std|boost)::(?:unique_ptr|shared_ptr|scoped_ptr)\s*<\s*([\w:]+)\s*>|([\w:]+)\s*\*(?:\s*const)?)"
+)
+"""A member that may point to its class's implementation."""
 
 
 class ObservedMember(NamedTuple):
@@ -207,6 +211,25 @@ class ClassReader:
                     least = self._find_least(member.name, one) if written else None
                     found[member.name] = _make_member(member, written, read)._replace(least=least)
         return list(found.values())
+
+    def list_parts(self, cls: Cls, callback: Fn | None) -> list[tuple[str, Cls]]:
+        """The data members of a class that point to its implementation, with the class of that: one that is declared in
+        it, one that only the source file knows whose class it is not in, or the one that the callback is of."""
+        own = self.find_class(callback)
+        found: dict[str, Cls] = {}
+        for one in self.code.list_bases(cls):
+            for member in one.facts.members:
+                pointed = _POINTED.fullmatch(member.type.strip())
+                if pointed is None or not member.name.isidentifier():
+                    continue
+                inner = self.code.find_class_of_type(pointed[1] or pointed[2], one.source, one.name)
+                if inner is None or not inner.facts.members or inner.key == cls.key:
+                    continue
+                is_hidden = inner.source.path.endswith(SOURCES) and inner.source.path != one.source.path
+                is_inner = inner.name.startswith(f"{one.name}::")
+                if is_hidden or is_inner or (own is not None and own.key == inner.key):
+                    found.setdefault(member.name, inner)
+        return list(found.items())
 
     def _is_written_by_others(self, name: str, cls: Cls) -> bool:
         """Whether a function of a class that is no constructor writes a member."""
