@@ -329,6 +329,10 @@ class Survey:
                 service = self._definitions.find(f"{package}/srv/{name.removesuffix(end)}")
                 if name.endswith(end) and service is not None and len(service.sections) > place:
                     return service.sections[place]
+            for end, place in (("Goal", 0), ("Result", 1), ("Feedback", 2)):
+                action = self._definitions.find(f"{package}/action/{name.removesuffix(end)}")
+                if name.endswith(end) and action is not None and len(action.sections) > place:
+                    return action.sections[place]
             return None
 
         return Messages(find_section, self.workspace.ros)
@@ -351,7 +355,8 @@ class Survey:
             # The top of a module has no name.
             name = one.site.name if one.kind == "main" else one.name
             code = CallbackCode(
-                module, name, line, one.message_type, one.joined, one.place, one.kind, self.workspace.ros == 2
+                module, name, line, one.message_type, one.joined, one.place, one.kind, self.workspace.ros == 2,
+                one.role,
             )
             yield _Target(_identify(one), answer, self._name_python_constants(one.message_type), code=code)
 
@@ -380,6 +385,8 @@ class Survey:
 
     def _replay_python(self, target: _Target, witness: Witness, example: CallbackExample) -> Replayed:
         assert target.code is not None
+        if target.answer.kind == "action":
+            return Replayed(Reaction.UNKNOWN, reason="callbacks of actions in Python are not run")
         path = self.root / target.answer.path
         folders = list_folders([self.root / code.path for code in self._modules.values()])
         own = list_folders([path])
@@ -446,8 +453,6 @@ def _refuse(callback: CppCallback) -> str:
     place = f"{callback.path}:{callback.line}"
     if callback.function is None:
         return f"{place}: the callback is not known"
-    if callback.kind == "action":
-        return f"{place}: callbacks of an action in Python are not explored"
     parameters = [one for one in callback.function.facts.parameters if one.default is None and one.name != "self"]
     if callback.is_filtered and not callback.joined and len(parameters) != 1:
         return f"{place}: which of the messages that a synchronizer gives is this one is not known"
