@@ -17,5 +17,5 @@ READ = ("arm/arm/__init__.py", "arm/arm/tables/__init__.py", "arm/arm/move.py")
     ],
 )
 def test_a_file_that_could_not_be_read_is_a_module(unread, lacks):
-    modules = PackageModules(dict.fromkeys(READ, PythonFile()), (), (*READ, *unread))
+    modules = PackageModules(dict.fromkeys(READ, PythonFile((), (), ())), (), (*READ, *unread))
     assert modules.lacks("arm.tables.tables") is lacks
