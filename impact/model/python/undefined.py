@@ -138,7 +138,7 @@ def list_siblings(
     started = modules.list_started(setup)
     for path in sorted((started | imported) - modules.list_loaded_beside("sys.path")):
         for item in files[path].imports:
-            if not item.level and modules.is_beside(path, item.module.partition(".")[0]):
+            if not (item.level or item.started) and modules.is_beside(path, item.module.partition(".")[0]):
                 yield path, msgspec.structs.replace(item, names=(BESIDE,), lazy=item.lazy or path not in started)
 
 
