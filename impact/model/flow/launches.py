@@ -163,6 +163,8 @@ def _find_launches(workspace: Workspace, code: Callable[[], Join], jobs: int) ->
         ((_, followed),) = workers.wait_for_finished()
     if isinstance(followed, processes.Died):
         followed = _follow(workspace, files)
+    # Others ask for it too, see follow_launch_files().
+    workspace.derived[follow_launch_files.__wrapped__,] = followed  # type: ignore[attr-defined]
     followed = _select_working(followed)
     if jobs < _SHARING:
         yield from _start(workspace, join, followed)
