@@ -9,7 +9,7 @@ Why it breaks
 
 Severity
     error; warning in tests, and where it is not known which folders targets search, as where find_path() looks one up,
-    or what a command that is called does.
+    or what a command that is called does, and for `<lift.h>`, which may be of a library of the system.
 
 Example
     #include "lift.h"                           // which is include/winch/lift.h, and include_directories(include)
@@ -67,7 +67,8 @@ def unsearched_header(view: TargetView, package: Package):
         seen.add(place)
         inside = f"/{header}".rpartition("/include/")
         data = {"header": package.strip_path(header), "replacement": inside[2] if inside[1] else ""}
-        doubts = (*list_place_doubts(view, include.role), known or Doubt.INCOMPLETE)
+        library = include.angled and "/" not in path  # such as the system has, where it has that library
+        doubts = (*list_place_doubts(view, include.role), known or Doubt.INCOMPLETE, not library or Doubt.AMBIGUOUS)
         yield Diagnostic(include.at, path, package.name, data, doubts=doubts)
 
 
