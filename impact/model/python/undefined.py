@@ -197,7 +197,7 @@ def offer_python(
     """What others can import of a package. files, others, paths: as above. roots: the folders of its Python packages
     that it installs."""
     modules = {}
-    open_roots = {root for root in roots if any(_adds_modules(files[p]) for p in files if p.startswith(f"{root}/"))}
+    open_roots = {root for root in roots if any(_may_add_modules(files[p]) for p in files if p.startswith(f"{root}/"))}
     for path, facts in files.items():
         stem = _strip_ending(path)
         root = next((one for one in roots if stem == one or stem.startswith(f"{one}/")), None)
@@ -206,7 +206,7 @@ def offer_python(
     return PythonOffer(modules, PackageModules(files, others, paths).built) if modules else PythonOffer()
 
 
-def _adds_modules(facts: PythonFile) -> bool:
+def _may_add_modules(facts: PythonFile) -> bool:
     """Whether a file gives a package modules that have no files, or looks for them in other folders."""
     return any(use.text.startswith(("sys.modules", "pkgutil.extend_path")) for use in facts.attributes)
 
@@ -268,7 +268,7 @@ class PackageModules:
     @cached_property
     def _open(self) -> frozenset[str]:
         """The names of the outermost Python packages whose modules are not all known by their files."""
-        adding = [path for path, facts in self._files.items() if _adds_modules(facts)]
+        adding = [path for path, facts in self._files.items() if _may_add_modules(facts)]
         roots = ((name, f"{root}/") for name, several in self._roots.items() for root in several)
         return frozenset(name for name, root in roots if any(path.startswith(root) for path in adding))
 
