@@ -1858,7 +1858,7 @@ class PackageJoin:
         own = [file for place, file in self.setup if posixpath.dirname(place) == self.path]
         if self.build_type != "ament_python" or not any(file.packages or file.entry_points for file in own):
             return False
-        if not path.endswith(".py"):
+        if posixpath.splitext(path)[1] not in ("", ".py"):  # settings are judged wherever they lie
             return False
         if f"{folder}/__init__.py" in self.files or path.endswith((".launch.py", "_launch.py")):
             return False
