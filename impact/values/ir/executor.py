@@ -660,7 +660,8 @@ class Executor:
                         self._record(state, end)
                         return
         except (MemoryError, RecursionError, z3.Z3Exception, ctypes.ArgumentError, ArithmeticError, LookupError,
-                TypeError, ValueError, AttributeError, AssertionError, ReadingError, UnknownSizeError) as problem:  # fmt: skip
+                TypeError, ValueError, AttributeError, AssertionError, ReadingError,
+                UnknownSizeError) as problem:  # fmt: skip
             instruction = state.frames[-1].get_instruction() if state.frames else None
             what = instruction.opcode if instruction is not None else "the end"
             if os.environ.get("ROSIMPACT_VALUES_RAISE"):
