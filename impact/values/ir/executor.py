@@ -8,6 +8,7 @@ solver.
 
 from __future__ import annotations
 
+import ctypes
 import math
 import os
 import time
@@ -658,8 +659,9 @@ class Executor:
                     if not self._go_on(state, end):
                         self._record(state, end)
                         return
-        except (MemoryError, RecursionError, z3.Z3Exception, ArithmeticError, LookupError, TypeError, ValueError,
-                AttributeError, AssertionError, ReadingError, UnknownSizeError) as problem:  # fmt: skip
+        except (MemoryError, RecursionError, z3.Z3Exception, ctypes.ArgumentError, ArithmeticError, LookupError,
+                TypeError, ValueError, AttributeError, AssertionError, ReadingError,
+                UnknownSizeError) as problem:  # fmt: skip
             instruction = state.frames[-1].get_instruction() if state.frames else None
             what = instruction.opcode if instruction is not None else "the end"
             if os.environ.get("ROSIMPACT_VALUES_RAISE"):
