@@ -6,6 +6,7 @@ sources judged it benchmarks/systems/NAME.drawn.jsonl. A record is a fact, never
                is from), certain; verdict: `right`, `wrong name`, `wrong node`, `wrong type`, `none` (nothing such is
                there), `open` (the sources do not tell); why: one clause
     site       a place in C++ or Python code that a search of the text takes for an API call: repo, path, line, role;
+               name, of those that were judged before: what a reader makes of it, before a launch file renames it;
                found: the graph has an endpoint, parameter or timer there, or names the place as not resolved, or leaves
                out its file or package and says so (`named`);
                verdict, of those that are not found, or were judged before: `call` or `none` (the text is no such call)
@@ -16,8 +17,9 @@ usage: flow_sight.py sites --set NAME --clones FOLDER [--number 20] [--seed 18]
        flow_sight.py recheck --set NAME --clones FOLDER
 
 `sites` writes the sites alone, which need no graph: they can be judged before anybody runs `graph`. `draw` writes the
-records without verdicts, and keeps what is said of sites that were written before; `score` prints the figures of those that have one; `recheck` prints which
-endpoints that were judged right the graph of today still has, which wrong ones it still states, and which sites it has.
+records without verdicts, and keeps what is said of sites that were written before; `score` prints the figures of those
+that have one; `recheck` prints which endpoints that were judged right the graph of today still has, which wrong ones it
+still states, and which sites it has.
 """
 
 from __future__ import annotations
@@ -134,7 +136,7 @@ def find_clone(clones: Path, repo: str) -> mining.Clone:
 
 
 def draw(clone: mining.Clone, commit: str, number: int, seed: int, before: list[dict]) -> Iterator[dict]:
-    """Records of a system: as many endpoints and sites, each chosen at random. before: sites that were drawn already."""
+    """Records of a system: as many endpoints and sites, each chosen at random. before: the sites, if drawn already."""
     chance = random.Random(f"{seed} {clone.name} {commit}")
     found = read_graph(clone, commit)
     about = {"repo": clone.name, "commit": commit}
