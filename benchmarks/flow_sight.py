@@ -10,6 +10,8 @@ sources judged it benchmarks/systems/NAME.drawn.jsonl. A record is a fact, never
                found: the graph has an endpoint, parameter or timer there, or names the place as not resolved, or leaves
                out its file or package and says so (`named`);
                verdict, of those that are not found, or were judged before: `call` or `none` (the text is no such call)
+    known      an endpoint of a node whose program a reader read as a whole before there was a graph: repo, role, node,
+               name, as a running system shows them; found: the graph has it, `certain` or not (`stated`), or not (``)
 
 usage: flow_sight.py sites --set NAME --clones FOLDER [--number 20] [--seed 18]
        flow_sight.py draw --set NAME --clones FOLDER [--number 20] [--seed 18]
@@ -17,9 +19,9 @@ usage: flow_sight.py sites --set NAME --clones FOLDER [--number 20] [--seed 18]
        flow_sight.py recheck --set NAME --clones FOLDER
 
 `sites` writes the sites alone, which need no graph: they can be judged before anybody runs `graph`. `draw` writes the
-records without verdicts, and keeps what is said of sites that were written before; `score` prints the figures of those
-that have one; `recheck` prints which endpoints that were judged right the graph of today still has, which wrong ones it
-still states, and which sites it has.
+records without verdicts, and keeps what was said before of sites and of known endpoints; `score` prints the figures of
+those that have one; `recheck` prints which endpoints that were judged right the graph of today still has, which wrong
+ones it still states, and which sites it has.
 """
 
 from __future__ import annotations
@@ -136,7 +138,7 @@ def find_clone(clones: Path, repo: str) -> mining.Clone:
 
 
 def draw(clone: mining.Clone, commit: str, number: int, seed: int, before: list[dict]) -> Iterator[dict]:
-    """Records of a system: as many endpoints and sites, each chosen at random. before: the sites, if drawn already."""
+    """Records of a system: as many endpoints and sites, each chosen at random. before: what was written already."""
     chance = random.Random(f"{seed} {clone.name} {commit}")
     found = read_graph(clone, commit)
     about = {"repo": clone.name, "commit": commit}
@@ -150,8 +152,17 @@ def draw(clone: mining.Clone, commit: str, number: int, seed: int, before: list[
         for one in found[listed] if not one.get("implied") and one.get("topic")
     ]  # fmt: skip
     yield from chance.sample(endpoints, min(number, len(endpoints)))
+    have = defaultdict(set)
+    for listed, role in ROLES.items():
+        for one in found[listed]:
+            key = role, names.get(one["node"], one["node"]), one.get("topic")
+            have[key].add("certain" if is_certain(one, names) else "stated")
+    for one in before:
+        if one["kind"] == "known":
+            stated = have[one["role"], one["node"], one["name"]]
+            yield {**one, "found": min(stated, default="")}
     seen = SeenPlaces(found)
-    for one in before or draw_sites(clone, commit, number, seed):
+    for one in [one for one in before if one["kind"] == "site"] or draw_sites(clone, commit, number, seed):
         place = one["path"], one["line"]
         yield {**one, "found": seen.has(one["role"], *place), "named": seen.names(*place)}
 
@@ -230,6 +241,9 @@ def score(records: list[dict]) -> None:
         calls = [one for one in sites_of_calls if one["role"] == role]
         found, named = sum(one["found"] for one in calls), sum(one["named"] and not one["found"] for one in calls)
         print(f"{role}: {found} of {len(calls)} found, {named} more named as not resolved")
+    for role in sorted({one["role"] for one in records if one["kind"] == "known"}):
+        states = Counter(one["found"] for one in records if one["kind"] == "known" and one["role"] == role)
+        print(f"known {role}: {states['certain']} of {states.total()} certain, {states['stated']} more stated")
 
 
 def main() -> None:
@@ -254,7 +268,7 @@ def main() -> None:
             try:
                 clone = find_clone(options.clones, system["repo"])
                 about = clone, system["commit"], options.number, options.seed
-                known = [one for one in before if one["repo"] == clone.name and one["kind"] == "site"]
+                known = [one for one in before if one["repo"] == clone.name and one["kind"] != "endpoint"]
                 records = list(draw_sites(*about) if options.command == "sites" else draw(*about, known))
             except GraphFailed as error:
                 print(error, file=sys.stderr)
