@@ -423,6 +423,8 @@ class Workspace:
                     continue
                 if any(path.endswith(f"/{include.path}") for path in owner.linked.files):
                     continue  # a file that is not called like a header (`types.macro`)
+                if any(rule.rename == posixpath.basename(rest) for rule in owner.build.installs):
+                    continue  # another file is installed as it
                 found.add(include.path)
         return frozenset(found)
 

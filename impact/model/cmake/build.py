@@ -263,7 +263,8 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     generators of interfaces are given. unresolved: (place, reason) of what could not be known. files: the CMake files
     read, relative to the root. made: paths that configuring or building writes, or of the tree that git ignores; a
     folder ends with a slash, and what lies in the build folder starts with ${CMAKE_BINARY_DIR}. starts: files of the
-    package that configuring starts as programs, which may write anything. from_found: paths that
+    package that configuring starts as programs, and other programs of whose answer CMake takes nothing, which all may
+    write anything. from_found: paths that
     start at the CMake folder of a package that is found, with that package. handed_on: what the
     scripts look for that the package gives to those who find it (CONFIG_EXTRAS, what these include, and extensions that
     they register). catkin_destinations: catkin_package(), or a macro that calls catkin_destinations() as
