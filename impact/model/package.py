@@ -979,23 +979,36 @@ class PackageJoin:
                 yield path, tuple(c for c in around[0] if all(c in other for other in around))
 
     def list_unsearched(self, roles) -> Iterator[tuple[IncludeUse, str]]:
-        """As LinkedPackage.unsearched."""
+        """As LinkedPackage.unsearched. What is reached by a header alone that may be another one of this path tells
+        nothing."""
+        sources = {one for target in self.build.targets for one in target.sources if one in self.cpp}
+        surely = set(walk(sources, self._list_searched)) | sources
         for path, (role, public, targets, conditions) in roles.items():
-            for to, include in self.resolved.get(path, ()) if targets else ():
-                ending = f"/{include.path}"
-                if to is None or include.path.startswith(".") or to.endswith(".in"):
-                    continue
-                if f"/{to}".removesuffix(ending).lstrip("/") in self._folders:
-                    continue  # as most are, so that no other file is looked at
-                if to == posixpath.normpath(posixpath.join(posixpath.dirname(path), include.path)):
-                    continue
-                same = (f"/{file.removesuffix('.in')}" for file in self.by_name[posixpath.basename(include.path)])
-                roots = {one.removesuffix(ending).lstrip("/") for one in same if one.endswith(ending)}
-                if not roots.isdisjoint(self._folders):
+            for to, include in self.resolved.get(path, ()) if targets and path in surely else ():
+                if to is None or self._searches(path, to, include):
                     continue
                 around = conditions + self.macros.resolve_conditions(include.conditions, targets)
                 at = At(path, include.line, include.column)
                 yield IncludeUse(include.path, at, role, public, around, targets, angled=include.angled), to
+
+    def _list_searched(self, path: str) -> Iterator[str]:
+        """The files that the includes of a file are resolved to, where compilers find them."""
+        found = self.resolved.get(path, ())
+        return (to for to, include in found if to is not None and self._searches(path, to, include))
+
+    def _searches(self, path: str, to: str, include: Include) -> bool:
+        """Whether the compiler finds the file that an include is resolved to, beside the one that has it or in a folder
+        that it is told to search, or that cannot be known."""
+        ending = f"/{include.path}"
+        if include.path.startswith(".") or to.endswith(".in"):
+            return True
+        if f"/{to}".removesuffix(ending).lstrip("/") in self._folders:
+            return True  # as most are, so that no other file is looked at
+        if to == posixpath.normpath(posixpath.join(posixpath.dirname(path), include.path)):
+            return True
+        same = (f"/{file.removesuffix('.in')}" for file in self.by_name[posixpath.basename(include.path)])
+        roots = {one.removesuffix(ending).lstrip("/") for one in same if one.endswith(ending)}
+        return not roots.isdisjoint(self._folders)
 
     def list_unincluded(self, roles) -> Iterator[tuple[NameUse, str, tuple[str, ...]]]:
         """As LinkedPackage.unincluded. A header counts that is called like its class, or the only one of a class whose
@@ -1844,6 +1857,8 @@ class PackageJoin:
         folder = posixpath.dirname(path)
         own = [file for place, file in self.setup if posixpath.dirname(place) == self.path]
         if self.build_type != "ament_python" or not any(file.packages or file.entry_points for file in own):
+            return False
+        if not path.endswith(".py"):
             return False
         if f"{folder}/__init__.py" in self.files or path.endswith((".launch.py", "_launch.py")):
             return False

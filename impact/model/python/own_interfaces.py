@@ -68,6 +68,9 @@ class OwnInterfaces:
             return ""
         if type_.count(".") > 2 and last in _WRAPPERS.get(type_.rpartition(".")[2], ()):
             return ""
+        # What a field has by default is an attribute of the class. Source: the template of rosidl_generator_py.
+        names = {f"{one.name.upper()}__DEFAULT": one.name for one in section.fields}
+        last = names.get(last, last)
         return "" if any(one.name == last for one in (*section.fields, *section.constants)) else type_
 
 

@@ -60,6 +60,8 @@ def unsearched_header(view: TargetView, package: Package):
             continue  # CMake searches the folder in which it found this very header
         if view.workspace.provides_header(path) != [package.name] or _has_another(view, package, path):
             continue
+        if view.workspace.generates_header(package, path):
+            continue  # a copy of what the build makes
         if view.workspace.unread and _may_be_unread(view, package, path):
             continue
         seen.add(place)
@@ -87,6 +89,9 @@ def _may_be_unread(view: TargetView, package: Package, path: str) -> bool:
 
 def _has_another(view: TargetView, package: Package, path: str) -> bool:
     """Whether something else that a package is built with may have a header of the same path."""
+    head = path.partition("/")[0]
+    if head not in (path, package.name) and view.is_package(head):
+        return True  # the header is called after that package, whatever lies in a folder of this name
     others = [one for one in view.providers.find_header(path) if one.name != package.name]
     around = view.build_environment(package)
     return any(one.kind != "ros" or one.name in around for one in others)
