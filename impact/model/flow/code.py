@@ -451,6 +451,18 @@ class FlowCode:
         return self._bodies.get(key, [])
 
     @cached_property
+    def fields(self) -> dict[str, tuple[str, ...]]:
+        """The data members of the classes of C++ that braces may fill one by one, in their order, by the classes' keys:
+        those without a base or a constructor."""
+        found: dict[str, tuple[str, ...]] = {}
+        for key, (cls, *more) in self._bodies.items():
+            names = tuple(one.name for one in cls.facts.members if one.type and not one.shared)
+            plain = cls.source.facts.language == "cpp" and not more and not cls.facts.bases
+            if plain and names and not any(map(self.is_constructor, self.list_functions(cls))):
+                found[key] = names
+        return found
+
+    @cached_property
     def _bodies(self) -> dict[str, list[Cls]]:
         return group_pairs((cls.key, cls) for group in self.classes.values() for cls in group)
 

@@ -690,6 +690,11 @@ class FlowValues:
         variable = self.code.identify(path, fn)
         if self._is_in(variable, seen):
             return
+        known = self.elements.find_field(path, variable, fn, line) if "." in path else None
+        if known:
+            for one in known:
+                yield from self._evaluate(one.value, one.fn, one.line, (*seen, variable))
+            return
         is_parsed = "." in path and self.command_line.is_parsed(path, fn)
         if is_parsed:
             self._note_arguments()
