@@ -185,7 +185,8 @@ class _File(CppStatements):
         said = strip_template(self.spell_node(target))
         if any(self.text[child.start_byte : child.end_byte] == "namespace" for child in children[:2]):
             self.aliases.append(Alias("*", said, name))
-        else:
+        elif not owner or said.split("::")[-2:-1] != said.split("::")[-1:]:
+            # `using Base::Base` in a class takes over constructors, and gives nothing a name.
             self.aliases.append(Alias(said.rpartition("::")[2], said, name))
 
     def enter_namespace_alias_definition(self, node: Node, name: str, owner: str, conditions) -> None:
