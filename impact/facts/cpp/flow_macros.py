@@ -13,6 +13,7 @@ _DEFINE = re.compile(
     r"(?P<body>(?:[^\n\\]|\\\n|\\[^\n])*)",
     re.MULTILINE,
 )
+_LIKE_FUNCTION = re.compile(rb"#[ \t]*define[ \t]+\w+\(")
 _DIRECTIVE = re.compile(r"^[ \t]*#(?:[^\n\\]|\\\n|\\[^\n])*", re.MULTILINE)
 _UNDEFINED = re.compile(r"^[ \t]*#[ \t]*undef[ \t]+(\w+)", re.MULTILINE)
 # Methods that make what the graph shows, as a macro calls them.
@@ -38,7 +39,7 @@ class _Macro(NamedTuple):
 
 def expand_macros(data: bytes) -> bytes:
     """A source with the uses of such macros replaced by what they stand for; the source itself where it has none."""
-    if b"#define" not in data and b"# define" not in data:
+    if _LIKE_FUNCTION.search(data) is None:
         return data
     text = decode_source(data)
     macros = _find_macros(text)
