@@ -131,6 +131,7 @@ class Contexts:
         """Who gives the constructors of a class, and of its bases, their arguments in some objects. chain: the class
         with its bases; rows: where the objects are made, None for anywhere."""
         keys = {one.key for one in chain}
+        above: set[Fn] = set()
         made: dict[Fn, list[Made]] = {}
         for one in chain:
             for fn in self.code.list_functions(one):
@@ -141,9 +142,21 @@ class Contexts:
                 inside = [row for row in every if (owner := self.code.find_owner(row[0])) and owner.key in keys]
                 if rows is not None:
                     inside = [row for row in inside if self._may_begin(row[0], chain[0], rows)]
-                own = self.code.list_constructed(fn) if rows is None else rows
+                own = self._list_own_constructed(fn, chain[0]) if rows is None else rows
                 made[fn] = [*inside, *(row for row in own if row in every and row not in inside)]
-        return made
+                if one is not chain[0] and not made[fn]:
+                    above.add(fn)
+        # A base's constructor that hands on to another one is not run where derived classes call that one.
+        return {fn: [row for row in found if row[0] not in above] or found for fn, found in made.items()}
+
+    def _list_own_constructed(self, fn: Fn, cls: Cls) -> list[Made]:
+        """Where objects of a class itself are made by one of its constructors, and not those that derive from it; all
+        where there are no others."""
+        rows = list(self.code.list_constructed(fn))
+        derived = {one.key for one in self.code.derived.get(cls.key, ())}
+        owners = ((row, self.code.find_owner(row[0])) for row in rows)
+        own = [row for row, owner in owners if not (owner and owner.key in derived and self._begins(row[0]))]
+        return own or rows
 
     def _may_begin(self, fn: Fn, cls: Cls, rows: list[Made]) -> bool:
         """Whether a function of a class or its bases may be what makes objects at some places: of the constructors of

@@ -291,11 +291,15 @@ class Join:
     def _split_by_object(self, running: Running, use: FrameworkCall | None) -> Iterator[Running]:
         """A program, and a node more for each further node object with a name of its own: in ROS 2 every one is a node
         by itself, and talks in its own name. use: that names the first."""
-        objects = self.objects.list_objects(running.functions)
+        loaded = next(map(self.code.find_owner, running.program.roots), None) if running.program.plugin else None
+        objects = self.objects.list_objects(running.functions, loaded)
         first = [one for one in objects if one.name == running.node.name or use in one.uses]
         first = [one for one in first if one.name == running.node.name] or first
         further = [one for one in objects if one not in first] if first else []
         told = first[0] if len(first) == 1 else None
+        if told is not None and not is_open(told.name) and running.node.name:
+            # What its class is made with says more than what its code may give to any.
+            running = running._replace(node=structs.replace(running.node, name=told.name))
         if not further:
             yield running if told is None else running._replace(fixed=told.fixed, remaps=told.remaps)
             return

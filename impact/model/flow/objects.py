@@ -55,12 +55,13 @@ class NodeObjects:
         # the keys then.
         self._known: dict[int, tuple[FrameworkCall, list[tuple[frozenset[Fn], frozenset[Fn], frozenset[str]]]]] = {}
 
-    def list_objects(self, functions: Collection[Fn]) -> list[NodeObject]:
-        """The node objects of ROS 2 that some functions make."""
+    def list_objects(self, functions: Collection[Fn], loaded: Cls | None = None) -> list[NodeObject]:
+        """The node objects of ROS 2 that some functions make. loaded: the class of the plugin that they are of, of
+        which another program makes an object."""
         named = [use for use in self._named if use.fn in functions]
         by_class = group_pairs((owner.key, use) for use in named if (owner := self._find_named_class(use)))
         found: list[NodeObject] = []
-        for cls in self._list_classes(by_class, functions):
+        for cls in self._list_classes(by_class, functions, loaded):
             found += self._make_class_objects(cls, by_class, functions)
         for use in named:
             if self._find_named_class(use) is None:
@@ -90,7 +91,9 @@ class NodeObjects:
         own = not call.target and any(base is not None and base[0] == call.callee for base in bases)
         return self.code.find_owner(fn) if own else None
 
-    def _list_classes(self, by_class: Collection[str], functions: Collection[Fn]) -> list[Cls]:
+    def _list_classes(
+        self, by_class: Collection[str], functions: Collection[Fn], loaded: Cls | None
+    ) -> list[Cls]:  # fmt: skip
         """The classes of the nodes that some functions make. by_class: keys of those that give themselves a name: one
         that nothing is seen to make an object of counts too, where that is so of all that derive from it."""
         made = [
@@ -100,6 +103,8 @@ class NodeObjects:
             for cls in self.code.list_class_bodies(key)[:1]
             if self._is_node(cls)
         ]
+        if loaded is not None and loaded not in made and self._is_node(loaded):
+            made.insert(0, loaded)
         above = {one.key for cls in made for one in self.code.list_bases(cls)}
         alone = [self.code.list_class_bodies(key)[0] for key in by_class if key not in above]
         return [*made, *alone]
