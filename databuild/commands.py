@@ -14,15 +14,12 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-import msgspec
-import zstandard
-
-from ..edges.files import write_file
 from ..impact.facts.cmake import extract
 from ..impact.facts.manifest import extract as read_manifest
 from ..impact.model.cmake.names import COMMANDS
 from ..impact.targets.surface.store import load_shipped
 from ..impact.targets.tables import DATA
+from .table_file import write_table
 
 _NAME = re.compile(r"[a-z][a-z0-9]*_\w+\Z")
 _SCRIPT = re.compile(r"\.cmake(\.in|\.em)?\Z")
@@ -72,8 +69,7 @@ def main(arguments: list[str] | None = None) -> None:
         if name not in COMMANDS:
             owners[str(generation)].setdefault(name, set()).add(package)
     made = {ros: {name: " ".join(sorted(found)) for name, found in rows.items()} for ros, rows in owners.items()}
-    text = msgspec.json.encode(made, order="sorted")
-    write_file(given.output / "commands.json.zst", zstandard.ZstdCompressor(level=19).compress(text))
+    write_table(given.output / "commands.json.zst", made, order="sorted")
     print(*(f"ROS {ros}: {len(rows)} commands" for ros, rows in made.items()), sep=", ")
 
 

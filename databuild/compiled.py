@@ -46,6 +46,7 @@ from .providers import is_ros_source, read_dependencies
 from .surface.clones import Clone, VersionError
 from .surface.package import build_surfaces, link_build, list_compiled
 from .surface.unpacked_deb import DebError, read_members_and_links
+from .table_file import write_table
 
 _LARGEST = 120_000_000
 """Bytes of the packages of a library above which it is left out: makers' own archives of all that they have."""
@@ -395,10 +396,8 @@ def main(arguments: list[str] | None = None) -> None:
     if given.clones is not None:
         for key, names in build_source_names(given.clones).items():
             ros.setdefault(key, names)
-    raw = msgspec.json.encode(build_table(system, ros))
-    packed = zstandard.ZstdCompressor(level=22).compress(raw)
-    write_file(given.output / FILE, packed)
-    print(len(system), "libraries,", len(ros), "packages,", len(raw), "bytes,", len(packed), "packed")
+    size = write_table(given.output / FILE, build_table(system, ros), level=22)
+    print(len(system), "libraries,", len(ros), "packages,", size, "bytes packed")
 
 
 if __name__ == "__main__":

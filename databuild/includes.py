@@ -16,7 +16,6 @@ Headers of detail folders are not kept: what they include counts as included by 
 from __future__ import annotations
 
 import argparse
-import json
 import re
 from collections import Counter, defaultdict
 from collections.abc import Container, Iterable, Iterator, Sequence
@@ -25,9 +24,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import msgspec
-import zstandard
 
-from ..edges.files import write_file
 from ..impact.facts.condition import Condition
 from ..impact.targets.changes import DISTROS
 from ..impact.targets.distro.distro import DistroTarget
@@ -38,6 +35,7 @@ from ..impact.targets.tables import DATA
 from ..impact.targets.version import parse
 from .history import _find_tree
 from .surface.releases import find_git_directory
+from .table_file import write_table
 
 _HEADER = re.compile(r"(?:\.(?:h|hh|hpp|hxx|h\+\+|inl|ipp|tcc)(?:\.in|\.em|\.template)?|/[A-Z][A-Za-z]+)$")
 _INNER = re.compile(r"(?:^|/)(?:details?|impl|internal|aux_|preprocessed|src|arch|private|hal|cuda|experimental/impl)/")
@@ -663,9 +661,7 @@ def _find_stopped_types(table: includes.IncludesTable, ros: int) -> set[str]:
 
 
 def _write(table: includes.IncludesTable, output: Path) -> None:
-    plain = msgspec.to_builtins(table, order="deterministic")
-    raw = json.dumps(plain, separators=(",", ":"), sort_keys=True).encode()
-    write_file(output / "includes.json.zst", zstandard.ZstdCompressor(level=19).compress(raw))
+    write_table(output / "includes.json.zst", table, order="sorted")
 
 
 def _find_announcing_headers(included: Included) -> dict[str, tuple[str, ...]]:

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import argparse
 import ast
-import json
 import os
 import re
 import shutil
@@ -51,6 +50,7 @@ from .extract.module_getattr import read_module_getattr
 from .extract.python import extract
 from .includes import list_platform_versions
 from .python_std import prepare_stub
+from .table_file import write_table
 
 FILE = "changes_pypi.json.zst"
 PROJECTS = {name: name for name in (
@@ -503,9 +503,8 @@ def main(arguments: list[str] | None = None) -> None:
     made = build_groups(projects, index, lambda text: print(text, flush=True))
     made += build_moved(moved, index, lambda text: print(text, flush=True))
     groups = sorted([*kept, *made], key=lambda group: group["package"])
-    data = zstandard.ZstdCompressor(level=19).compress(json.dumps({"changes": groups}, separators=(",", ":")).encode())
-    write_file(file, data)
-    print(f"{len(data)} bytes, {index.downloaded / 1e6:.0f} MB downloaded")
+    size = write_table(file, {"changes": groups})
+    print(f"{size} bytes, {index.downloaded / 1e6:.0f} MB downloaded")
 
 
 if __name__ == "__main__":

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import argparse
 import hashlib
-import json
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -45,6 +44,7 @@ from .surface.compare import RepositorySurfaces
 from .surface.package import build_surfaces
 from .surface.releases import find_git_directory, normalize_url
 from .surface_changes import Lines
+from .table_file import write_table
 
 FILE = "changes_ros_tags.json.zst"
 _RELEASE = re.compile(r"(?:v|release-|ros2_)?(\d+\.\d+(?:\.\d+)*)\Z")
@@ -216,16 +216,11 @@ def main(arguments: list[str] | None = None) -> None:
     before = read_table(file, dict[str, Any])["changes"] if file.exists() else []
     groups = [*(group for group in before if group["source"] not in made), *(g for each in made.values() for g in each)]
     rows = {"changes": sorted(groups, key=lambda group: (group["package"], group["kind"], group["source"]))}
-    _write(file, rows)
+    write_table(file, rows)
     content, _ = drop_superseded(file)
-    _write(file, content)
+    write_table(file, content)
     left = sum(len(group["names"]) for group in content["changes"])
     print(f"{len(made)} clones, {sum(len(g['names']) for g in groups)} rows, {left} that nothing else tells")
-
-
-def _write(file: Path, content: dict[str, Any]) -> None:
-    data = json.dumps(content, separators=(",", ":")).encode()
-    write_file(file, zstandard.ZstdCompressor(level=19).compress(data))
 
 
 if __name__ == "__main__":

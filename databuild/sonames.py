@@ -17,12 +17,10 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-import msgspec
-
-from ..edges.files import write_file
 from ..impact.targets.machine.sonames import FILE, SonamesTable
 from ..impact.targets.tables import DATA
 from .providers import unpack
+from .table_file import write_table
 
 _LIBRARY = re.compile(rb"(?:usr/)?lib(?:32|64|x32)?/(?!debug/)(?:[^ \t]*/)?([^/ \t]+\.so\.\d[\w.+~-]*)[ \t]+(\S+)$")
 _NO_LIBRARY = (b".py", b".gz", b".hmac", b".txt")
@@ -102,8 +100,6 @@ def build_table(suites: Iterable[SuiteLibraries]) -> SonamesTable:
 
 def main(arguments: list[str] | None = None) -> None:
     """The command line described at the top."""
-    import zstandard
-
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--suite", action="append", default=[], help='"debian bookworm=LISTS"')
     parser.add_argument("--output", type=Path, default=DATA)
@@ -113,10 +109,8 @@ def main(arguments: list[str] | None = None) -> None:
         platform, _, lists = item.partition("=")
         suites.append(read_suite(platform, Path(lists)))
         print(platform, len(suites[-1].libraries), "libraries", suites[-1].symbols, flush=True)
-    raw = msgspec.json.encode(build_table(suites))
-    packed = zstandard.ZstdCompressor(level=22).compress(raw)
-    write_file(given.output / FILE, packed)
-    print(len(raw), "bytes,", len(packed), "packed")
+    size = write_table(given.output / FILE, build_table(suites), level=22)
+    print(size, "bytes packed")
 
 
 if __name__ == "__main__":

@@ -19,10 +19,10 @@ from pathlib import Path
 
 import zstandard
 
-from ..edges.files import write_file
 from ..impact.targets.providers.standard import DEFINED_IN
 from ..impact.targets.tables import DATA
 from .std_names import Probe
+from .table_file import write_table
 
 FILE = "providers_std.json.zst"
 STANDARDS = (11, 14, 17, 20)
@@ -93,9 +93,8 @@ def main(arguments: list[str] | None = None) -> None:
     file = given.output / FILE
     before = json.loads(zstandard.ZstdDecompressor().decompress(file.read_bytes())) if file.exists() else {}
     made = build_table(folders, before)
-    raw = json.dumps(made, indent=0).encode()
-    write_file(file, zstandard.ZstdCompressor(level=19).compress(raw))
-    print(len(made), "compilers,", len(raw), "bytes")
+    size = write_table(file, made)
+    print(len(made), "compilers,", size, "bytes packed")
 
 
 if __name__ == "__main__":

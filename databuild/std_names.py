@@ -22,9 +22,9 @@ from pathlib import Path
 
 import zstandard
 
-from ..edges.files import write_file
 from ..impact.targets.providers.standard import HEADER_SINCE
 from ..impact.targets.tables import DATA
+from .table_file import write_table
 
 NAMES = {
     "algorithm": """
@@ -326,8 +326,7 @@ def _main() -> None:
     table, file = build_table(folders), asked.output / "std_names.json.zst"
     if asked.onto:
         table = add_compilers(table, json.loads(zstandard.ZstdDecompressor().decompress(file.read_bytes())))
-    raw = json.dumps(table, separators=(",", ":")).encode()
-    write_file(file, zstandard.ZstdCompressor(level=19).compress(raw))
+    write_table(file, table)
 
 
 if __name__ == "__main__":

@@ -36,8 +36,6 @@ from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
-import zstandard
-
 from ..edges.files import write_file
 from ..impact.targets.availability import Availabilities
 from ..impact.targets.changes import DISTROS
@@ -53,6 +51,7 @@ from ..impact.targets.unpacked import read_table
 from ..impact.targets.version import is_at_least
 from .includes import list_platform_versions
 from .pypi import FILE as PYPI_FILE
+from .table_file import write_table
 
 _SIDES = {"api": ("c++",), "python": ("python",), "header": ("header",), "cmake": ("command", "target", "variable")}
 _SEPARATOR = {"c++": "::", "python": ".", "header": "\0"}
@@ -415,10 +414,10 @@ def format_content(content: dict[str, Any], parting: str = "\n  ") -> str:
     return '{"changes": [\n' + ",\n".join(groups) + "\n], " + last + "}\n"
 
 
-def write_table(file: Path, content: dict[str, Any]) -> None:
+def write_changes(file: Path, content: dict[str, Any]) -> None:
     """Writes a file's content, packed where it is."""
     if file.suffix == ".zst":
-        write_file(file, zstandard.ZstdCompressor(level=19).compress(json.dumps(content).encode()))
+        write_table(file, content)
     else:
         parting = "\n  " if b'"names": {\n' in file.read_bytes() else " "
         write_file(file, format_content(content, parting).encode())
@@ -435,7 +434,7 @@ def main(arguments: list[str]) -> None:
         for (kind, found), number in sorted(count.items()):
             print(f"  {kind:16} {found:13} {number}")
         if "--write" in arguments and changed:
-            write_table(file, content)
+            write_changes(file, content)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,14 @@ from rosimpact.impact.analysis.check import check
 from rosimpact.impact.analysis.report import Report
 from rosimpact.impact.analysis.session import Options
 from rosimpact.impact.rules.rule import Finding, load_rules
-from rosimpact.impact.tree.paths import IGNORE_MARKERS, PathProblem, TreeEntry, Walked, compute_blob_id, normalize_path
+from rosimpact.impact.tree.paths import (
+    PathProblem,
+    TreeEntry,
+    Walked,
+    compute_blob_id,
+    find_ignore_marker,
+    normalize_path,
+)
 
 HERE = Path(__file__).parent / "rules"
 Files = Mapping[str, str]
@@ -221,8 +228,11 @@ class MemoryTree(Walked):
         return {}
 
     def _walk(self, found: list[TreeEntry]) -> None:
-        markers = sorted(path for path in self._data if path.rpartition("/")[2] in IGNORE_MARKERS)
-        ignored = {path.rpartition("/")[0]: path.rpartition("/")[2] for path in reversed(markers)}
+        names: dict[str, set[str]] = {}
+        for path in sorted(self._data):
+            folder, _, name = path.rpartition("/")
+            names.setdefault(folder, set()).add(name)
+        ignored = {folder: marker for folder, each in names.items() if (marker := find_ignore_marker(each))}
         self.skipped += [PathProblem(folder or ".", f"holds {marker}") for folder, marker in ignored.items()]
         for path, data in self._data.items():
             if not any(not folder or path.startswith(f"{folder}/") for folder in ignored):

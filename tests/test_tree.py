@@ -77,6 +77,11 @@ LISTED = {
     "a marker below a package": ({"p/package.xml": "", "p/q/COLCON_IGNORE": "", "p/q/x.h": ""}, ["p/package.xml"]),
     "a marker at the root": ({"COLCON_IGNORE": "", "x": ""}, []),
     "an install space": ({"install/_setup_util.py": "", "install/share/a/package.xml": "", "x": ""}, ["x"]),
+    "a build folder of colcon": ({"build/a/colcon_build.rc": "0", "build/a/build/lib/a/n.py": "", "x": ""}, ["x"]),
+    "a build folder of CMake": ({"build/CMakeCache.txt": "", "build/a.cpp": "", "x": ""}, ["x"]),
+    "built beside the sources": (
+        {"CMakeCache.txt": "", "CMakeLists.txt": "", "a.cpp": ""}, ["CMakeCache.txt", "CMakeLists.txt", "a.cpp"]
+    ),
     "products are skipped by their marker only": (
         {"build/a.cpp": "", "log/package.xml": "", "devel/COLCON_IGNORE": "", "devel/x": "", "src/p/build/b.cpp": ""},
         ["build/a.cpp", "log/package.xml", "src/p/build/b.cpp"],

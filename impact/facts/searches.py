@@ -17,6 +17,7 @@ from .usage import (
     UsageTable,
     WatchedUse,
     declares,
+    enumerates,
     find_methods,
     find_uses,
     initializes_variable,
@@ -26,8 +27,8 @@ from .usage import (
 
 class WordUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """The first use of a bare word outside of comments, with the preprocessor conditions around it; line 1, column 0
-    where it stands in directives alone. own: the file declares a variable of this name with a value, or a function.
-    in_macro: it stands in macros alone, which may be used elsewhere."""
+    where it stands in directives alone. own: the file declares a variable of this name with a value, a constant
+    of an enum, or a function. in_macro: it stands in macros alone, which may be used elsewhere."""
 
     text: str
     line: int
@@ -58,7 +59,7 @@ def _find_word_use(data: bytes, word: str) -> WordUse:
     in_macros = scan(data).macro_lines
     outside = next((use for use in find_word_uses(data, word) if use[0] not in in_macros), None)
     line, column, conditions = outside or next(find_word_uses(data, word), (1, 0, ()))
-    own = initializes_variable(data, word) or declares(data, word)
+    own = initializes_variable(data, word) or declares(data, word) or enumerates(data, word)
     return WordUse(word, line, column, conditions, own, outside is None)
 
 

@@ -28,7 +28,8 @@ class SetupFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     that the package accepts, as written. unresolved: what was not a literal, in one clause each. python: of a setup.py,
     its imports and syntax like those of any Python file.
     script_folders: (command, folder, line) of the commands `install` and `develop` (--symlink-install): where programs
-    are installed, as written (`$base/lib/package`, without which `ros2 run` does not find them).
+    are installed, as written (`$base/lib/package`, without which `ros2 run` does not find them). namespaces: whether
+    packages are looked for that have no __init__.py too.
     """
 
     packages: tuple[str, ...] = ()
@@ -42,6 +43,7 @@ class SetupFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     python: PythonFile | None = None
     script_folders: tuple[tuple[str, str, int], ...] = ()
     python_requires: Requirement | None = None
+    namespaces: bool = False
 
     def list_module_paths(self, folder: str, module: str) -> tuple[str, str]:
         """The paths that a module of the package in this folder can have: as a file, and as a package."""
@@ -94,6 +96,7 @@ class _Reader(Constants):
         super().__init__()
         self.arguments: dict[str, Any] = {}
         self.unresolved: list[str] = []
+        self.namespaces = False
 
     def run(self, body: list[ast.stmt]) -> None:
         """Statements in order; both branches of an if, and the body of a loop once, since each may run."""
@@ -134,6 +137,7 @@ class _Reader(Constants):
     def find_result(self, call: ast.Call) -> Any:
         last = format_dotted(call.func).rpartition(".")[2]
         if last in ("find_packages", "find_namespace_packages"):
+            self.namespaces = self.namespaces or last == "find_namespace_packages"
             return [TextConstant("*", call.lineno)]
         return self.find_keywords(call) if last in SETUP_CALLS else super().find_result(call)
 
@@ -158,6 +162,7 @@ class _Reader(Constants):
             python_requires=_make_python(given.get("python_requires")),
             script_folders=tuple(self.list_script_folders(given.get("options"))),
             unresolved=tuple(self.unresolved),
+            namespaces=self.namespaces,
         )
 
     def list_strings(self, argument: str) -> list[str]:
@@ -265,6 +270,7 @@ def _read_setup_cfg(data: bytes) -> SetupFile:
         return [part.strip() for part in re.split(r"[\n,]", value) if part.strip()]
 
     packages = list_entries("options", "packages")
+    namespaces = packages[:1] == ["find_namespace:"]
     if packages and packages[0] in ("find:", "find_namespace:"):
         packages = ["*"]
     directories: dict[str, str] = {}
@@ -299,6 +305,7 @@ def _read_setup_cfg(data: bytes) -> SetupFile:
         ),
         python_requires=Requirement(python, lines.find_line("python_requires")) if python else None,
         script_folders=tuple(folder for folder in folders if folder[1]),
+        namespaces=namespaces,
     )
 
 
@@ -346,6 +353,7 @@ def _read_pyproject(data: bytes) -> SetupFile:
         ),
         python_requires=Requirement(python, lines.find_line("requires-python")) if isinstance(python, str) else None,
         script_folders=tuple(folders),
+        namespaces=isinstance(packages, dict),
     )
 
 

@@ -241,6 +241,23 @@ def initializes_variable(data: bytes, variable: str) -> bool:
     return False
 
 
+# How an enum begins, up to one of its constants: `enum class Code : int { A = 1, `.
+_ENUM = re.compile(rb"enum\b(?:\s+(?:class|struct)\b)?(?:\s+[A-Za-z_]\w*)?(?:\s*:[\w:\s]+)?\s*\{(?:[^{}]*,)?\s*\Z")
+_COMMENT = re.compile(rb"//[^\n]*|/\*.*?\*/", re.DOTALL)
+_LONGEST_ENUM = 20_000
+_WORD = re.compile(rb"\w")
+
+
+def enumerates(data: bytes, constant: str) -> bool:
+    """Whether a C++ file has a constant of this name in an enum."""
+    for at, end in _find_occurrences(constant.encode(), data):
+        begins = data.rfind(b"enum", max(0, at - _LONGEST_ENUM), at)
+        whole = not (_WORD.match(data[at - 1 : at]) or _WORD.match(data[end : end + 1]))
+        if begins >= 0 and whole and _ENUM.match(_COMMENT.sub(b"", data[begins:at])):
+            return True
+    return False
+
+
 def _find_line_start(data: bytes, at: int) -> int:
     """Where the line that a place stands in begins, or the last part of one that nobody wrote by hand."""
     earliest = max(0, at - _LONGEST_LINE)

@@ -12,7 +12,7 @@ from ...edges.limits import get_limits
 from ...edges.memory import cache_method
 from ..facts import kinds
 from ..model.package import find_folder_role
-from ..tree import IGNORE_MARKERS, GitTree, TreeError, shown
+from ..tree import GitTree, TreeError, find_ignore_marker, shown
 
 _MODE_FOLDER, _MODE_LINK, _MODE_SUBMODULE = 0o040000, 0o120000, 0o160000
 _COMMENT = re.compile(rb"<!--.*?(?:-->|\Z)", re.DOTALL)
@@ -200,7 +200,7 @@ class CommitHistory:
         items = self._list_folder(folder) if level < get_limits().depth else ()
         names = {name: item for name, mode, item in items if mode not in (_MODE_FOLDER, _MODE_LINK, _MODE_SUBMODULE)}
         found: list[_Found] = []
-        if not any(name in IGNORE_MARKERS for name in names):
+        if not find_ignore_marker(names):
             if "package.xml" in names:
                 found.append(_Found("", folder, names["package.xml"], False))
             else:

@@ -99,6 +99,9 @@ def is_nowhere(view: TargetView, package: Package, include: IncludeUse) -> bool:
     direct = {*view.collect_declared(package), *(one.name for one in build.found), *passed}
     if path.startswith("."):
         return True
+    own = (view.workspace.packages[one] for one in direct if one in view.workspace.packages)
+    if any(may_be_made(one, name) for one in own):
+        return False
     # A header that lies deeper than the exported folders of most packages is known by the surface of its own alone.
     brought = view.build_environment(package).union(direct)
     return all(_has_known_headers(view, one) for one in direct) and not view.offers.list_packages_with(path, brought)
@@ -132,9 +135,10 @@ def _has_known_headers(view: TargetView, name: str) -> bool:
 
 @cache_in_derived
 def _list_file_names(view: TargetView) -> frozenset[str]:
-    """The names of all files of the workspace."""
+    """The names of all files of the workspace, and those that they are installed as."""
     files = (path for package in view.workspace for path in package.linked.files)
-    return frozenset(path.rpartition("/")[2] for path in files)
+    names = {path.rpartition("/")[2] for path in files}
+    return frozenset(names.union(rule.rename for package in view.workspace for rule in package.build.installs))
 
 
 def _find_other_ending(package: Package, path: str, includer: str) -> str | None:

@@ -118,6 +118,9 @@ class Discovered:
         return owner
 
 
+
+# What stands for a name in templates of cookiecutter, Jinja, CMake, empy and shells; colcon passes over such packages.
+_PLACEHOLDER = re.compile(r"[{}$@<>%]")
 REPOSITORY_LISTS = (".repos", ".rosinstall")
 """How files of vcstool and wstool end, which name repositories and their versions."""
 
@@ -353,6 +356,8 @@ class _Search:
         return found
 
     def _explain_ignored(self, name: str) -> str:
+        if _PLACEHOLDER.search(name):
+            return f"its name, `{name}`, is a placeholder: a template that packages are made of"
         for key, (names, patterns, path, regex_path) in self.left_out.items():
             if name in names:
                 return f"{key} in {path}"

@@ -59,6 +59,8 @@ _UMBRELLAS = frozenset({"ros", "moveit", "ecl", "pcl", "opencv2", "gazebo", "boo
 _GENERATED = ("rclcpp/node_interfaces/", "rclcpp/logging.hpp")
 # System packages so broad that they bring half of ROS along.
 _BROAD = frozenset({"mrpt"})
+# Debian packages of libraries and modules: what installs none of them is programs and data alone.
+_LIBRARIES = re.compile(r"lib|python|.*-dev\Z")
 _UNCONFIGURED = Config()
 # What may be known by its identity as long as it is kept, since it does not change.
 _LASTING = (frozenset, MappingProxyType)
@@ -409,6 +411,11 @@ class WorkspaceOnTarget:
         return name in self.config.private or name in self.config.installed
 
     @cache_method
+    def is_program(self, name: str) -> bool:
+        """True for a rosdep key that installs programs alone, so that CMake means something else by its name."""
+        debs = self.list_debs(name)
+        return bool(debs) and not any(map(_LIBRARIES.match, debs)) and not self.find_cmake(name)
+
     def means_package(self, name: str) -> bool:
         """Whether a name that is a rosdep key too stands for a package: code of the workspace includes headers below a
         folder called so, and none of them is known of anything."""

@@ -9,6 +9,7 @@ import itertools
 import posixpath
 import re
 from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence
+from fnmatch import fnmatchcase
 from functools import cache, cached_property, partial
 from typing import TYPE_CHECKING, Any
 
@@ -630,6 +631,7 @@ class PackageJoin:
         # Python files that run since a launch file or script of the package starts them, and what they import.
         self.started: set[str] = set()
         self.interpreted: set[str] = set()
+        self.setup: tuple[tuple[str, SetupFile], ...] = ()
         self.macros = Macros((), ())
         self.unresolved_receivers = 0
 
@@ -732,6 +734,10 @@ class PackageJoin:
                 programs = (p for p, f in python.items() if f.interpreter and not _is_part(f))
                 names.update(posixpath.basename(p) for p in programs if self.find_role(p) is None)
             self.start_scripts(python, names)
+        elif self.build_type == "ament_python":
+            self.setup = tuple(setup)
+            own = (reference for _, reference in references if reference.package == self.name)
+            self.start_scripts(python, {posixpath.basename(reference.name) for reference in own})
         table = self.watched.in_cpp
         if table.patterns or table.words:
             self.searched = self.look(self.cpp, "searched_cpp", table)
@@ -973,23 +979,36 @@ class PackageJoin:
                 yield path, tuple(c for c in around[0] if all(c in other for other in around))
 
     def list_unsearched(self, roles) -> Iterator[tuple[IncludeUse, str]]:
-        """As LinkedPackage.unsearched."""
+        """As LinkedPackage.unsearched. What is reached by a header alone that may be another one of this path tells
+        nothing."""
+        sources = {one for target in self.build.targets for one in target.sources if one in self.cpp}
+        surely = set(walk(sources, self._list_searched)) | sources
         for path, (role, public, targets, conditions) in roles.items():
-            for to, include in self.resolved.get(path, ()) if targets else ():
-                ending = f"/{include.path}"
-                if to is None or include.path.startswith(".") or to.endswith(".in"):
-                    continue
-                if f"/{to}".removesuffix(ending).lstrip("/") in self._folders:
-                    continue  # as most are, so that no other file is looked at
-                if to == posixpath.normpath(posixpath.join(posixpath.dirname(path), include.path)):
-                    continue
-                same = (f"/{file.removesuffix('.in')}" for file in self.by_name[posixpath.basename(include.path)])
-                roots = {one.removesuffix(ending).lstrip("/") for one in same if one.endswith(ending)}
-                if not roots.isdisjoint(self._folders):
+            for to, include in self.resolved.get(path, ()) if targets and path in surely else ():
+                if to is None or self._searches(path, to, include):
                     continue
                 around = conditions + self.macros.resolve_conditions(include.conditions, targets)
                 at = At(path, include.line, include.column)
                 yield IncludeUse(include.path, at, role, public, around, targets, angled=include.angled), to
+
+    def _list_searched(self, path: str) -> Iterator[str]:
+        """The files that the includes of a file are resolved to, where compilers find them."""
+        found = self.resolved.get(path, ())
+        return (to for to, include in found if to is not None and self._searches(path, to, include))
+
+    def _searches(self, path: str, to: str, include: Include) -> bool:
+        """Whether the compiler finds the file that an include is resolved to, beside the one that has it or in a folder
+        that it is told to search, or that cannot be known."""
+        ending = f"/{include.path}"
+        if include.path.startswith(".") or to.endswith(".in"):
+            return True
+        if f"/{to}".removesuffix(ending).lstrip("/") in self._folders:
+            return True  # as most are, so that no other file is looked at
+        if to == posixpath.normpath(posixpath.join(posixpath.dirname(path), include.path)):
+            return True
+        same = (f"/{file.removesuffix('.in')}" for file in self.by_name[posixpath.basename(include.path)])
+        roots = {one.removesuffix(ending).lstrip("/") for one in same if one.endswith(ending)}
+        return not roots.isdisjoint(self._folders)
 
     def list_unincluded(self, roles) -> Iterator[tuple[NameUse, str, tuple[str, ...]]]:
         """As LinkedPackage.unincluded. A header counts that is called like its class, or the only one of a class whose
@@ -1183,7 +1202,7 @@ class PackageJoin:
         needed: list[NeededHeader] = []
         watched = self.watched
         # What the package defines itself is its own, whatever a library of that name did.
-        defined = {name for facts in self.cpp.values() for name in facts.defined}
+        defined = {name for facts in self.cpp.values() for name in facts.defined}.union(self.own_constants)
         for path, (role, public, targets, conditions) in roles.items():
             facts = self.cpp.get(path)
             if facts is None:
@@ -1251,13 +1270,20 @@ class PackageJoin:
         macro = f"{space.upper()}_"
         return space not in self.spaces and not any(macro in facts.words for facts in self.cpp.values())
 
+    @property
+    def own_constants(self) -> frozenset[str]:
+        """Words of a table that the package calls constants of its own, as macros are called."""
+        words = (word for found in self.searched.values() for word in found.words)
+        return frozenset(word.text for word in words if word.own and word.text.isupper())
+
     def list_defined_names(self) -> Iterator[str]:
         """Macros and types that the package defines and that somebody asks about: names of a table, and those in a
         namespace that is called like another package, one whose versions are stored or a declared one."""
         asked, surfaces = self.watched.in_tables, self.watched.surfaces
         stored = surfaces.packages if surfaces is not None else frozenset()
         declared = {dependency.name for dependency in self.manifest.dependencies}
-        for name in {name for facts in self.cpp.values() for name in (*facts.defined, *facts.types)}:
+        names = {name for facts in self.cpp.values() for name in (*facts.defined, *facts.types)}
+        for name in names.union(self.own_constants):
             head = name.partition("::")[0]
             if name in asked or (head != self.name and (head in stored or head in declared)):
                 yield name
@@ -1812,6 +1838,8 @@ class PackageJoin:
             return "aside"
         if role is None and is_vendored(inside) and self._is_left_out(path):
             return "aside"
+        if role is None and path not in self.started and self._is_left_by_setup(path):
+            return "aside"
         return role or ("run" if path in self.started or self.is_installed(path) else "aside")
 
     def _is_left_out(self, path: str) -> bool:
@@ -1822,6 +1850,31 @@ class PackageJoin:
             return False
         items = (posixpath.normpath(item) if item else "" for rule in self.build.installs for item in rule.items)
         return not any(not item or f"{path}/".startswith(f"{item}/") for item in items)
+
+    def _is_left_by_setup(self, path: str) -> bool:
+        """Whether a setup.py of which all is known that it installs leaves a Python file out: it is in no package or
+        module of Python that may be installed, no data_files and no script. Launch files are started where they lie."""
+        folder = posixpath.dirname(path)
+        own = [file for place, file in self.setup if posixpath.dirname(place) == self.path]
+        if self.build_type != "ament_python" or not any(file.packages or file.entry_points for file in own):
+            return False
+        if not path.endswith(".py"):
+            return False
+        if f"{folder}/__init__.py" in self.files or path.endswith((".launch.py", "_launch.py")):
+            return False
+        inside = self.strip_prefix(path)
+        if inside.startswith((f"{self.name}/", "launch/")) or "/" not in inside:
+            return False
+        if any(file.problems or file.namespaces for file in own):
+            return False
+        if any(clause.startswith(_INSTALLING) for file in own for clause in file.unresolved):
+            return False
+        modules = (file.list_module_paths(self.path, name) for file in own for name in file.packages)
+        if any(path == module or folder == posixpath.dirname(below) for module, below in modules):
+            return False
+        copied = (one for file in own for one in (*(pattern for _, pattern, _ in file.data_files), *file.scripts))
+        patterns = map(posixpath.normpath, copied)
+        return not any(fnmatchcase(inside, one) or inside.startswith(f"{one}/") for one in patterns)
 
     def is_run_as_test(self, path: str) -> bool:
         """True for Python files of tests that the build runs, or may run: whatever lies in a folder of one, and modules
@@ -1886,6 +1939,8 @@ class PackageJoin:
         return self.build_type == "catkin" and inside.startswith("src/") and self.prefix + "setup.py" in self.files
 
 
+# Arguments of setup() that say what is installed, as unresolved clauses begin.
+_INSTALLING = ("packages", "package_dir", "py_modules", "data_files", "scripts", "arguments", "written")
 # Commands that may run tests, besides those that the interpreter knows and those of linters.
 _MAY_TEST = re.compile(r"\A(?!ament_|catkin_add|roslaunch_add|add_(?:launch|ros)).*test")
 _BUILT = re.compile(r"\$\{(?:\w*BINARY_DIR|CATKIN_DEVEL_PREFIX)\}")

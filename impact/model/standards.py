@@ -117,7 +117,9 @@ _HARMLESS = ("catkin_", "ament_", "add_rostest", "add_ros", "generate_messages",
 
 
 def may_be_set_elsewhere(view: TargetView, package: Package) -> bool:
-    """True where a macro of another package may set the standard."""
+    """True where a macro of another package, or a variable that it sets, may set the standard."""
+    if package.build.open_flags:
+        return True
     if any(u.kind == "command" and not u.name.startswith(_HARMLESS) for u in package.build.uses):
         return True
     if any("include(" in reason for _, reason in package.build.unresolved):

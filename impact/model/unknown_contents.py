@@ -29,6 +29,8 @@ FINDING = ("find_package", "catkin", "declared", "ament_lint_auto")
 _IN_BUILD = re.compile(r"\$\{(?:CMAKE|PROJECT)(?:_CURRENT)?_BINARY_DIR\}/")
 # What is stored of headers that are not known: the folder that is installed.
 _INSTALLED_FOLDER = re.compile(r"`[^`]*/(\w+)/?` is installed")
+# Debian packages that hold a library alone, which are called after its version: `libtinyxml2-6`, `libzmq5t64`.
+_LIBRARY = re.compile(r"lib.*\d(?:[a-z]|v5|t64|ldbl)?")
 # Folders that are not called after what they hold.
 _PLAIN_FOLDERS = frozenset(("include", "src", "lib"))
 
@@ -81,10 +83,9 @@ class UnknownContents:
         """Whether something wanted is most likely there, since something of unknown contents is called after it: made
         apart, or coming along as the release of a library that is built with plain CMake or Meson, or that a package of
         ROS carries (`mrpt2`, `sdformat_vendor`), or one that no index has (`glog_catkin`), or a declared release whose
-        files are not stored."""
-        return self.is_made_apart(package, wanted) or any(
-            _may_be_called_after(name, wanted) for name in self._list_of_unknown_contents(package)
-        )
+        files are not stored, or a key of which nobody knows what it brings."""
+        unknown = (*self._list_of_unknown_contents(package), *self.list_opaque(package))
+        return self.is_made_apart(package, wanted) or any(_may_be_called_after(name, wanted) for name in unknown)
 
     def may_install_folder(self, package: Package, header: str) -> bool:
         """Whether a declared release installs a folder of headers that its build makes, called as that of a header."""
@@ -243,7 +244,7 @@ class UnknownContents:
         """The packages of a key that may bring libraries: those for development, Gazebo's, and collections of no
         archive that was read."""
         for debian in self._view.list_debs(key):
-            collects = not debian.startswith("lib") and not self._view.apt.knows(debian)
+            collects = not _LIBRARY.fullmatch(debian) and not self._view.apt.knows(debian)
             if collects or debian.endswith("-dev") or debian.startswith("gazebo"):
                 yield debian
 

@@ -390,6 +390,11 @@ class Workspace:
         package = self.packages.get(head)
         return [head] if package is not None and rest and self._generates(package, rest) else []
 
+    def generates_header(self, package: Package, include: str) -> bool:
+        """Whether a package makes a header from its interfaces or parameters, as far as its path tells."""
+        head, _, rest = include.partition("/")
+        return head == package.name and bool(rest) and self._generates(package, rest)
+
     def _generates(self, package: Package, rest: str) -> bool:
         if not package.build.files or package.manifest.metapackage:
             return False
@@ -423,8 +428,19 @@ class Workspace:
                     continue
                 if any(path.endswith(f"/{include.path}") for path in owner.linked.files):
                     continue  # a file that is not called like a header (`types.macro`)
+                if any(rule.rename == posixpath.basename(rest) for rule in owner.build.installs):
+                    continue  # another file is installed as it
+                if owner is not package and self._may_install(owner, include.path):
+                    continue
                 found.add(include.path)
         return frozenset(found)
+
+    def _may_install(self, package: Package, header: str) -> bool:
+        """Whether a package installs a file as a header, wherever it lies in the tree, or what is not known."""
+        from .cmake.installed import collect_installed_headers
+
+        installed = collect_installed_headers(package)
+        return not installed.known or any(f"/{place}".endswith(f"/{header}") for place in installed.headers.values())
 
     def _is_closed(self, package: Package) -> bool:
         """True when nothing in a package makes headers but its interfaces and dynamic_reconfigure."""

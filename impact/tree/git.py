@@ -8,7 +8,6 @@ from collections import Counter
 from typing import Any
 
 from .paths import (
-    IGNORE_MARKERS,
     LEAVES,
     LONGEST_PATH,
     VERSION_CONTROL,
@@ -17,6 +16,7 @@ from .paths import (
     TreeError,
     Walked,
     find_file_size_limit,
+    find_ignore_marker,
     is_within,
     join,
     normalize_path,
@@ -169,9 +169,8 @@ class GitTree(Walked):
             why = str(error.strerror).replace("its object", "the folder's object")
             self.problems.append(PathProblem(folder or ".", why))
             return
-        markers = [name for name, _, _ in items if name in IGNORE_MARKERS]
-        if markers:
-            self.skipped.append(PathProblem(folder or ".", f"holds {min(markers)}"))
+        if marker := find_ignore_marker({name for name, _, _ in items}):
+            self.skipped.append(PathProblem(folder or ".", f"holds {marker}"))
             return
         room = max(self._left, 0)
         self._count(folder, len(items), folder[:100] + "…")

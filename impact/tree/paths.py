@@ -3,7 +3,7 @@
 import errno
 import hashlib
 import posixpath
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from functools import cache
 from typing import Protocol
 
@@ -12,9 +12,10 @@ import msgspec
 from ...edges.console import UserError, escape
 from ...edges.limits import get_limits
 
-IGNORE_MARKERS = frozenset(
-    ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE", "_setup_util.py", "_order_isolated_packages.py")
-)
+_IGNORE_MARKERS = frozenset((
+    "COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE", "_setup_util.py", "_order_isolated_packages.py",
+    "colcon_build.rc",
+))  # fmt: skip
 VERSION_CONTROL = frozenset((".git", ".hg", ".svn", ".bzr", ".jj"))
 # Characters of all paths together, for each file that a tree may hold: deep folders make long paths.
 CHARACTERS = 100
@@ -28,6 +29,15 @@ _VENDORED = frozenset((
     "third_party", "thirdparty", "third-party", "3rdparty", "3rd_party", "3rd-party", "external", "externals", "extern",
     "vendor", "vendored",
 ))  # fmt: skip
+
+
+def find_ignore_marker(names: Collection[str]) -> str | None:
+    """The file of a folder for which it is skipped; None where it is not. names: of what the folder holds. A cache of
+    CMake beside no CMakeLists.txt is that of a build folder."""
+    found = min(_IGNORE_MARKERS.intersection(names), default=None)
+    if found is None and "CMakeCache.txt" in names and "CMakeLists.txt" not in names:
+        return "CMakeCache.txt"
+    return found
 
 
 def is_vendored(path: str) -> bool:

@@ -12,7 +12,6 @@ from ...edges import files
 from ...edges.limits import get_limits
 from .ignore import Index, find_enclosing_repository
 from .paths import (
-    IGNORE_MARKERS,
     LEAVES,
     VERSION_CONTROL,
     PathProblem,
@@ -21,6 +20,7 @@ from .paths import (
     Walked,
     compute_blob_id,
     find_file_size_limit,
+    find_ignore_marker,
     is_within,
     join,
     make_outside_error,
@@ -128,8 +128,7 @@ class WorkingTree(Walked):
             self.problems.append(PathProblem(folder or ".", f"the folder cannot be listed: {_format_reason(error)}"))
             return
         names = {item.name for item in items}
-        if not IGNORE_MARKERS.isdisjoint(names):
-            marker = min(IGNORE_MARKERS & names)
+        if marker := find_ignore_marker(names):
             self.skipped.append(PathProblem(folder or ".", f"holds {marker}"))
             return
         self._count(folder, len(items), folder or ".")

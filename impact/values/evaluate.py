@@ -95,7 +95,8 @@ def _is_any_possible(paths: Sequence[CallbackPath], condition: z3.BoolRef, name:
 
 
 def _name_array(size: str) -> str:
-    return size.removesuffix(".size").removeprefix("msg.")
+    """What a reader knows a size by; of what code gives that is not followed, there is no name."""
+    return "arrays and texts of other code" if size[:1] == "~" else size.removesuffix(".size").removeprefix("msg.")
 
 
 def _list_fields(

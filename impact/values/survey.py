@@ -44,6 +44,8 @@ from .python.replay import ReplayPlace, list_folders, replay_witness
 from .settings import find_parameters
 from .witnesses import WitnessRecord, format_publish_command, write_tests
 
+_FIRST_SHARE = 0.75
+"""Of the time that is left, where a callback is reached in another way, too."""
 KINDS = ("subscriber", "service", "timer", "action", "main")
 LANGUAGES = ("cpp", "python")
 _ANY_NUMBER = (InputKind.INTEGER, 64, False)
@@ -327,6 +329,10 @@ class Survey:
                 service = self._definitions.find(f"{package}/srv/{name.removesuffix(end)}")
                 if name.endswith(end) and service is not None and len(service.sections) > place:
                     return service.sections[place]
+            for end, place in (("Goal", 0), ("Result", 1), ("Feedback", 2)):
+                action = self._definitions.find(f"{package}/action/{name.removesuffix(end)}")
+                if name.endswith(end) and action is not None and len(action.sections) > place:
+                    return action.sections[place]
             return None
 
         return Messages(find_section, self.workspace.ros)
@@ -349,7 +355,8 @@ class Survey:
             # The top of a module has no name.
             name = one.site.name if one.kind == "main" else one.name
             code = CallbackCode(
-                module, name, line, one.message_type, one.joined, one.place, one.kind, self.workspace.ros == 2
+                module, name, line, one.message_type, one.joined, one.place, one.kind, self.workspace.ros == 2,
+                one.role,
             )
             yield _Target(_identify(one), answer, self._name_python_constants(one.message_type), code=code)
 
@@ -378,6 +385,8 @@ class Survey:
 
     def _replay_python(self, target: _Target, witness: Witness, example: CallbackExample) -> Replayed:
         assert target.code is not None
+        if target.answer.kind == "action":
+            return Replayed(Reaction.UNKNOWN, reason="callbacks of actions in Python are not run")
         path = self.root / target.answer.path
         folders = list_folders([self.root / code.path for code in self._modules.values()])
         own = list_folders([path])
@@ -444,8 +453,6 @@ def _refuse(callback: CppCallback) -> str:
     place = f"{callback.path}:{callback.line}"
     if callback.function is None:
         return f"{place}: the callback is not known"
-    if callback.kind == "action":
-        return f"{place}: callbacks of an action in Python are not explored"
     parameters = [one for one in callback.function.facts.parameters if one.default is None and one.name != "self"]
     if callback.is_filtered and not callback.joined and len(parameters) != 1:
         return f"{place}: which of the messages that a synchronizer gives is this one is not known"
@@ -528,15 +535,21 @@ def _shorten_sent(sent: SentThrough, root: Path) -> SentThrough:
 
 
 def _explore_entries(prepared: PreparedCallback, bounds: Bounds) -> Exploration:
-    """What comes of the first entry that leads to a verdict; of the first of all where none does."""
+    """What comes of the first entry that leads to a verdict; of the first of all where none does. They share the time
+    of the callback."""
     first: Exploration | None = None
+    left = bounds.seconds
     ways = {prepared.entry: prepared.way, **{one.name: one.way for one in prepared.others}}
-    for entry, way in ways.items():
-        found = explore(prepared.ir_texts, entry, bounds, prepared.is_workspace_file)
+    for number, (entry, way) in enumerate(ways.items(), 1):
+        seconds = left if number == len(ways) else left * _FIRST_SHARE
+        found = explore(prepared.ir_texts, entry, replace(bounds, seconds=seconds), prepared.is_workspace_file)
+        left -= found.seconds
         found.is_bare = way == "bare"
         if any(path.result is not Reaction.UNKNOWN for path in found.paths):
             return found
         first = first or found
+        if left <= 0:
+            break
     assert first is not None
     return first
 

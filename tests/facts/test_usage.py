@@ -1,7 +1,7 @@
 """How uses look: calls, initialisations, members and types, told from the text of a file alone."""
 
 import pytest
-from rosimpact.impact.facts.usage import Pattern, declares, find_use_places, initializes_variable
+from rosimpact.impact.facts.usage import Pattern, declares, enumerates, find_use_places, initializes_variable
 
 CALL = Pattern("Duration", before=r"rclcpp\s*::\s*", arguments="1", names=True)
 MEMBER = Pattern("codec", before=r"\bstreams\s*\[[^\]\n]*\]\s*->\s*", after=r"\s*->")
@@ -157,3 +157,20 @@ INITIALISED = [
 @pytest.mark.parametrize(("code", "expected"), INITIALISED)
 def test_a_variable_that_a_file_declares(code, expected):
     assert initializes_variable(code.encode(), "turn") is expected
+
+
+@pytest.mark.parametrize(
+    ("code", "expected"),
+    [
+        ("enum { TURN = 7 };", True),
+        ("enum class Move : int { GO = (1 << 2), // c, d }\n  TURN };", True),
+        ("typedef enum Move_t { GO, WAIT,\n /* last */ TURN } Move_t;", True),
+        ("enum Move { GO = TURN };", False),
+        ("enum Move { GO }; int move = TURN;", False),
+        ("enum Move { MY_TURN };", False),
+        ("void move(enum Move go, TURN);", False),
+        ("move(TURN);", False),
+    ],
+)
+def test_a_constant_of_an_enum(code, expected):
+    assert enumerates(code.encode(), "TURN") is expected

@@ -197,6 +197,14 @@ def test_ignored_packages_are_told(tmp_path):
     assert found.find_owner("a/x.cpp") is None
 
 
+@pytest.mark.parametrize("name", ["{{cookiecutter.name}}", "@(name)", "${NAME}", "<name>", "%name%"])
+def test_templates_of_packages_are_left_out(tmp_path, name):
+    manifest = A.replace("<name>a</name>", f"<name>{name.replace('<', '&lt;').replace('>', '&gt;')}</name>")
+    found = find(tmp_path, {"template/package.xml": manifest, "b/package.xml": B})
+    assert [place.name for place in found.packages] == ["b"]
+    assert [place.path for place in found.ignored] == ["template"]
+
+
 def test_duplicates_are_told(tmp_path):
     found = find(tmp_path, {"one/package.xml": A, "two/package.xml": A, "b/package.xml": B})
     assert found.duplicates == (("a", "one", "two"),)

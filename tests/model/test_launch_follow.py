@@ -11,7 +11,7 @@ from rosimpact.impact.facts.launch.flow import extract
 from rosimpact.impact.facts.launch.parameter_files import extract as parameters
 from rosimpact.impact.model.launch.follow import MOST_ACTIONS, follow
 from rosimpact.impact.model.launch.result import SettingFile, select_file_values
-from rosimpact.impact.model.launch.text import CannotTell, LaunchText, evaluate, parse_ros1_value
+from rosimpact.impact.model.launch.text import CannotTell, LaunchText, evaluate, make_either, parse_ros1_value
 
 
 class Files:
@@ -241,6 +241,30 @@ def test_an_undecided_condition_is_kept():
     assert (first.namespace.value, first.namespace.shown) == (None, "</ or /x>")
     assert remaps(first) == [("a", "<x or y>")]
     assert second.conditions == ()
+
+
+def test_what_is_set_again_and_again_is_shown_once():
+    """Each of two values is put over the other many times; a third is put over both."""
+    steps = [f"SetLaunchConfiguration('ns', '{value}', condition=IfCondition(LaunchConfiguration('go')))"
+             for value in (*"yzyzyzy", "w")]  # fmt: skip
+    launch = run2(f"""DeclareLaunchArgument('go'), DeclareLaunchArgument('ns', default_value='x'), {', '.join(steps)},
+        Node(package='k', executable='e', name='n', remappings=[('a', LaunchConfiguration('ns'))])""")
+    assert remaps(launch.started[0]) == [("a", "<x or y or z or w>")]
+
+
+@pytest.mark.parametrize(
+    "first, second, expected",
+    [
+        ("<a>", "<a>", "<a>"),
+        ("a", "a", "<a>"),
+        ("/<a>/<b>", "<a or <b or c>>", "</<a>/<b> or a or <b or c>>"),
+        ("<a> or <b>", "x", "<<a> or <b> or x>"),
+        ("<1 or 2 or 3>", "<4 or 5 or 6 or 7>", "<1 or 2 or 3 or 4 or 5 or 6 or ...>"),
+        ("<1 or 2 or 3 or 4 or 5 or 6 or ...>", "1", "<1 or 2 or 3 or 4 or 5 or 6 or ...>"),
+    ],
+)
+def test_either_of_two_texts(first, second, expected):
+    assert make_either(first, second) == LaunchText(None, expected)
 
 
 def test_includes_of_ros2():

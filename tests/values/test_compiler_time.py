@@ -43,3 +43,43 @@ def test_a_source_that_needs_many_rounds(tmp_path, compiling, expected):
     found = Prepared(root, tmp_path / "harness", ("subscriber",), Bounds(compiling=compiling)).by_name["onLevel"]
     assert found.reason.startswith(expected) and bool(found.reason) == bool(expected)
     assert found.compiled_in > 0 and (found.rounds == 1 if expected else found.rounds > 3)
+
+
+NODES = """
+#include <rclcpp/rclcpp.hpp>
+#include <std_msgs/msg/int32.hpp>
+#include "machine/shared.hpp"
+class {name} : public rclcpp::Node {{
+ public:
+  {name}() : rclcpp::Node("node") {{
+    sub_ = create_subscription<std_msgs::msg::Int32>("a", 1, [this](const std_msgs::msg::Int32::SharedPtr msg) {{
+      set_level(msg->data);
+    }});
+  }}
+  rclcpp::Subscription<std_msgs::msg::Int32>::SharedPtr sub_;
+}};
+int main(int argc, char **argv) {{ rclcpp::init(argc, argv); rclcpp::spin(std::make_shared<{name}>()); }}
+"""
+SHARED = """#pragma once
+#include <vendor/version.hpp>
+#include <vendor/driver.hpp>
+#if VENDOR_VERSION_GTE(2, 0)
+#error "too new"
+#endif
+inline void set_level(int level) {
+  vendor::Info info = vendor::ask().latest().info;
+  vendor::Mode mode = info.mode(3).other();
+  vendor::start(vendor::FAST, level, mode);
+}
+"""
+
+
+@needs_clang
+def test_what_a_shared_header_lacks_is_found_out_once(tmp_path):
+    """Several rounds for the first source that includes it, one for each other."""
+    files = {f"src/{name}.cpp": NODES.format(name=name) for name in ("One", "Two")}
+    files["include/machine/shared.hpp"] = SHARED
+    root = write_workspace(tmp_path / "ws", 2, files, "src/One.cpp src/Two.cpp")
+    found = Prepared(root, tmp_path / "harness", ("subscriber",), Bounds()).all
+    assert [one.reason for one in found] == ["", ""]
+    assert found[0].rounds > 3 and found[1].rounds == 1

@@ -55,13 +55,42 @@ def test_the_least_part_is_left_out_first(mark, least, then):
         at = cut.start  # where an error of what stands there now would be
         assert SOURCE[cut.start : cut.end].startswith(expected)
         assert file.rendered.count("\n") == SOURCE.count("\n")
-        assert (cut.text.strip() in ("", '::ri::cut("why");', '::ri::cut_end("why");')) and cut.text in file.rendered
+        said = cut.text.partition(" ::ri::Anything")[0].strip()
+        assert (said in ("", '::ri::cut("why");', '::ri::cut_end("why");')) and cut.text in file.rendered
 
 
 def test_what_gives_a_value_ends_the_way():
     file = SourceFile("int f() { if (g()) return vendor::one(); return 2; }\nvoid h() { vendor::two(); }")
     assert file.cut(1, 27, "one") and file.cut(2, 12, "two")
     assert file.rendered == 'int f() { ::ri::cut_end("one"); return 2; }\nvoid h() { ::ri::cut("two"); }'
+
+
+@pytest.mark.parametrize(
+    "statement, declared",
+    [
+        ("const vendor::Info info = vendor::ask();", ["info"]),
+        ("std::vector<vendor::Info> all(vendor::list());", ["all"]),
+        ("auto & [one, two] = vendor::pair();", ["one", "two"]),
+        ("vendor::Info *at = vendor::find();", ["at"]),
+        ("return vendor::ask();", []),
+        ("delete vendor::held;", []),
+        ("known = vendor::ask();", []),
+        ("vendor::start(known);", []),
+        ("known == vendor::ask();", []),
+    ],
+)
+def test_variables_of_a_declaration_that_is_left_out_are_there(statement, declared):
+    file = SourceFile(f"void f() {{ {statement} }}")
+    assert file.cut(1, 12 + statement.index("vendor"), "why")
+    assert [each.strip(" ;") for each in file.rendered.split("::ri::Anything ")[1:]] == [
+        *declared[:-1], *(f"{each}; }}" for each in declared[-1:])
+    ]  # fmt: skip
+
+
+def test_an_error_of_the_preprocessor_is_no_reason_to_leave_out_what_is_around_it():
+    file = SourceFile("int one;\n#if VENDOR_VERSION(1)\nusing std::string;\n#endif\nint two;\n")
+    assert not file.cut(2, 5, "why") and file.rendered == file.text
+    assert file.cut(3, 7, "why") and "using" not in file.rendered
 
 
 def test_errors_elsewhere_are_where_they_come_from():

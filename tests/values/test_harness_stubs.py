@@ -128,3 +128,77 @@ def test_what_is_called_of_an_object_is_no_type():
     assert table.learn(parse_errors("/ws/a.cpp:2:9: error: no type named 'Solver' in namespace 'vendor'"))
     assert table.learn(parse_errors("/ws/a.cpp:1:11: error: no member named 'Solve' in 'vendor::Solver'"))
     assert "static ri::Anything Solve(RiB &&...a)" in table.render()
+
+
+@pytest.mark.parametrize(
+    "lines, text, expected",
+    [
+        ("auto n = vendor::now().since_epoch().count();", "no member named 'now' in namespace 'vendor'",
+         {"since_epoch": "function", "count": "function"}),
+        ("auto n = vendor::all[0].", "no member named 'all' in namespace 'vendor'", {}),
+        ("auto n = vendor::all[at(0)].info.get<int>(3)->last;", "no member named 'all' in namespace 'vendor'",
+         {"info": "member", "get": "function", "last": "member"}),
+        ("auto n = vendor::now(a,\n  b(1))\n  .count(); x.other();", "no member named 'now' in namespace 'vendor'",
+         {"count": "function"}),
+        ("vendor::Now n; n.count();", "no type named 'Now' in namespace 'vendor'", {}),
+    ],
+)  # fmt: skip
+def test_what_is_asked_of_what_a_name_gives_is_learnt_with_it(lines, text, expected):
+    rows = lines.split("\n")
+    table = StubTable(lambda path, number: rows[number - 1] if number <= len(rows) else "")
+    column = rows[0].index("vendor::") + 9
+    assert table.learn(parse_errors(f"/ws/a.cpp:1:{column}: error: {text}"))
+    assert table.extras == ({"ri::Anything": expected} if expected else {})
+
+
+@pytest.mark.parametrize(
+    "line, text, expected",
+    [
+        ("using vendor::ImagePtr;", "no member named 'ImagePtr' in namespace 'vendor'", "struct ImagePtr"),
+        ("using vendor::share;", "no member named 'share' in namespace 'vendor'", "ri::Anything share("),
+        ("auto x = vendor::share;", "no member named 'share' in namespace 'vendor'", "inline ri::Anything share;"),
+    ],
+)
+def test_what_is_used_from_a_namespace(line, text, expected):
+    table = StubTable(lambda path, number: line)
+    assert table.learn(parse_errors(f"/ws/a.cpp:1:{line.index('::') + 3}: error: {text}"))
+    assert expected in table.render()
+
+
+def test_what_hides_a_type_is_one():
+    table = StubTable(lambda path, number: "auto x = vendor::Kind;")
+    assert table.learn(parse_errors("/ws/a.cpp:1:18: error: no member named 'Kind' in namespace 'vendor'"))
+    tag = "error: must use 'struct' tag to refer to type 'Kind' in this scope"
+    assert table.learn(parse_errors(f"/ws/a.cpp:2:3: {tag}")) and "struct Kind" in table.render()
+    assert not table.learn(parse_errors(f"/ws/a.cpp:2:3: {tag}"))
+
+
+def test_a_macro_that_a_condition_asks_and_nobody_defines():
+    table = StubTable(lambda path, number: "#if VENDOR_VERSION_GTE(1, 2)")
+    text = "/ws/a.cpp:1:5: error: function-like macro 'VENDOR_VERSION_GTE' is not defined"
+    rest = "\n/ws/a.cpp:9:1: error: use of undeclared identifier 'member_'"
+    assert table.learn(parse_errors(text + rest)) and not table.list_names()
+    assert table.flags == {"-DVENDOR_VERSION_GTE(...)=0"}
+    assert not table.learn(parse_errors(text))
+
+
+def test_a_namespace_is_learnt_before_what_is_asked_of_it():
+    table, _ = learn((2, 3, "use of undeclared identifier 'vendor'"), (9, 1, "use of undeclared identifier 'member_'"))
+    assert table.list_names() == [] and "namespace vendor { }" in table.render()
+
+
+def test_a_type_of_anything_is_not_derived_from_it():
+    line = "tf2_ros::Own::Options o;"
+    table = StubTable(lambda path, number: line)
+    assert table.learn(parse_errors("/ws/a.cpp:1:15: error: no type named 'Options' in 'tf2_ros::Own'"))
+    assert "using Options = Anything;" in table.render() and "struct Options" not in table.render()
+
+
+def test_what_a_header_taught_one_unit_is_known_to_the_next():
+    first, _ = learn(
+        (7, 11, "no type named 'Mode' in namespace 'vendor'"), (3, 3, "no member named 'go' in 'ri::Anything'")
+    )
+    second = StubTable(lambda path, line: LINES.get(line, ""), extras={"ri::Anything": {"stop": "function"}})
+    second.learn_again(first.lessons)
+    assert second.list_names() == ["vendor::Mode"] and second.extras == {"ri::Anything": {"stop": "function"}}
+    assert "ri::Anything stop(" in second.render_extras()[0]

@@ -11,7 +11,12 @@ from rosimpact.impact.model.flow.workspace import link_for_flow
 from rosimpact.impact.values.harness import precompiled
 from rosimpact.impact.values.harness.compile import _IR_FLAGS
 from rosimpact.impact.values.harness.interfaces import KnownInterfaces
-from rosimpact.impact.values.harness.precompiled import Facade, find_includes, split_dependencies
+from rosimpact.impact.values.harness.precompiled import (
+    Facade,
+    find_includes,
+    find_plain_includes,
+    split_dependencies,
+)
 from rosimpact.impact.values.harness.toolchain import find_clang
 from rosimpact.impact.values.outcomes import Reaction
 
@@ -104,6 +109,35 @@ def test_what_is_included_and_what_a_rule_names():
     text = '#include <a/b.h>\n  #  include "c.hpp"\n// include <d.h>\n#if 0\n#include <e>\n#endif\n'
     assert find_includes(text) == ["a/b.h", "c.hpp", "e"]
     assert split_dependencies("x.o: a.cpp \\\n  /b\\ c/d.h e.h\n") == ["a.cpp", "/b c/d.h", "e.h"]
+
+
+def test_what_is_included_without_a_condition():
+    text = "#ifndef A_H\n#define A_H\n#include <a>\n#ifdef B\n#include <b>\n#else\n#include <c>\n#endif\n#include <d>\n"
+    assert find_plain_includes(text + "#endif\n#if B\n#include <e>\n#endif\n") == {"a", "d"}
+    assert find_plain_includes("#ifndef B\n#include <b>\n#endif\n# include <c>\n") == {"c"}
+
+
+@needs_clang
+def test_a_facade_with_further_members_is_compiled_once(root, tmp_path, monkeypatch):
+    with Store(None) as store:
+        facade = Facade(KnownInterfaces(link_for_flow(open_tree(root, ""), store, 1)))
+    flags = ["-std=gnu++17", "-w", "-DRI_ROS=2", "-DRI_ARRAY=3", "-DRI_TEXT=4", *_IR_FLAGS]
+    compiled = []
+
+    def run(command, folder):
+        compiled.append(command)
+        return precompiled.run_compiler(command, folder)
+
+    def find(*names):
+        extras = [f"#define RI_EXTRA_rclcpp_Node {' '.join(f'int {each};' for each in names)}"]
+        return facade.find_extended(find_clang(), flags, extras, tmp_path / "extended", run)
+
+    first, second = find("one"), find("one", "two")
+    assert first.exists() and second.exists() and find("one") == first and len(compiled) == 2
+    third = find("three")  # the two that were asked for last are kept
+    assert third.exists() and first.exists() and not second.exists()
+    assert find("not valid") is None and find("not valid") is None and len(compiled) == 4
+    assert first.exists() and third.exists()
 
 
 @needs_clang

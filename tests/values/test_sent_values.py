@@ -1,5 +1,7 @@
 """What callbacks send, per publisher and field."""
 
+from dataclasses import replace
+
 import pytest
 from ir_programs import FOLDER, compile_program, explore_entry, needs_clang
 from rosimpact.impact.values import sent_values
@@ -44,3 +46,9 @@ def test_ends_are_found_where_the_solver_names_small_steps(entry, published, mon
     (through,) = evaluate(explore_entry(published, entry), {}, 600).sent
     (sent,) = through.fields
     assert format_values(sent.values) == f"{EXPECTED[entry][1].removesuffix(' (relational)')} (relational)"
+
+
+@needs_clang
+def test_bounds_are_called_as_a_reader_knows_them(published):
+    explored = replace(explore_entry(published, "constants"), exceeded=frozenset({"~foreign[0]", "msg.data.size"}))
+    assert evaluate(explored, {}, 600).beyond == ("data", "arrays and texts of other code")

@@ -12,6 +12,7 @@ from functools import cached_property
 from tree_sitter import Node
 
 from ....edges.memory import cache_method
+from .flow_clean import has_lone_macro
 from .flow_grammar import (
     DECLARED_TYPES,
     KIND,
@@ -806,7 +807,8 @@ class _Declarations:
         inside: dict[str, list[Declaration]] = {}
         place = len(self.classes)
         self._add_nodes(body.named_children, full, inside, ())
-        open_ = any(child.kind_id == KIND.ERROR or child.is_missing for child in body.children) or any(
+        hidden = any(map(self._may_hide_members, body.children))
+        open_ = hidden or has_lone_macro(code._parsed[0], body.start_byte, body.end_byte) or any(
             each.type.isupper() and each.type not in template for those in inside.values() for each in those
         )
         spot = code._find_spot(name.start_byte)
@@ -814,6 +816,21 @@ class _Declarations:
         self.classes.insert(place, one)
         if members is not None:
             self._add(members, Declaration("type", strip_templates(written), scope))
+
+    def _may_hide_members(self, node: Node) -> bool:
+        """Whether a part of a class may declare what is not seen: it was not understood, as a macro alone is, or
+        includes a file."""
+        if node.kind_id == KIND.ERROR or node.is_missing:
+            return True
+        if node.kind_id in (KIND.preproc_call, KIND.preproc_include) and "include" in self.code._read(node):
+            return True
+        if node.kind_id == KIND.field_declaration and node.child_by_field_name("declarator") is None:
+            type_ = node.child_by_field_name("type")
+            if type_ is not None and type_.kind_id == KIND.type_identifier:
+                return True
+        # What is wrong with the body of a function is not one of its class's members.
+        heads = [child for child in node.children if child.kind_id not in _BODIES]
+        return node.has_error and any(child.has_error or child.is_missing for child in heads)
 
     def _add_enum(self, node: Node, scope: str, members) -> None:
         code = self.code

@@ -128,6 +128,13 @@ def clean_further(data: bytes, before: Cleaned) -> Cleaned:
     return Cleaned(before.text, source.encode(), before.starts, regions, hidden)
 
 
+def has_lone_macro(text: str, begin: int, end: int) -> bool:
+    """Whether a macro stands alone on a line of a stretch, which may declare anything: none that is known to say how
+    something is seen, stored or compiled."""
+    found = (match["gone"] for match in _LONE_MACRO.finditer(text, begin, end))
+    return any(word not in _BARE and not _NO_MEMBERS.match(word) for word in found)
+
+
 def _blank_visibility(source: str) -> str:
     """`class FOO_PUBLIC A` as `class            A`. Searched from the end of the word, which is the rarer part."""
     gone: list[tuple[int, int]] = []
@@ -235,6 +242,7 @@ _STATEMENT_MACRO = re.compile(
 )
 # `PCL_ADD_POINT4D` in a class, without a semicolon.
 _LONE_MACRO = re.compile(r"^[ \t]*(?P<gone>[A-Z][A-Z0-9_]{4,})[ \t]*(?=//|$)", re.MULTILINE)
+_NO_MEMBERS = re.compile(r"\w+_(?:PUBLIC|EXPORTS?|LOCAL|API|DECL|VISIBILITY|IMPORT|HIDDEN|DEPRECATED)(?:_TYPE)?\Z")
 # `REGISTER_POINT(Point, (float, x, x)(float, y, y))`
 _SEQUENCE_MACRO = re.compile(
     r"^[ \t]*(?P<gone>[A-Z][A-Z0-9_]{5,}\s*\([^();{}]*(?:\([^();{}]*\)\s*(?://[^\n]*\s*)?){2,}\))", re.MULTILINE

@@ -30,7 +30,8 @@ from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, WRAPPERS, PackagePath, P
 
 class Import(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """`import module` or `from module import names`. level counts leading dots. lazy: inside a function. called: what
-    the names are called here, empty where that is how they are called there."""
+    the names are called here, empty where that is how they are called there. started: only where the file itself is
+    started (`if __name__ == "__main__"`)."""
 
     module: str
     names: tuple[str, ...]
@@ -40,6 +41,7 @@ class Import(msgspec.Struct, frozen=True, array_like=True, gc=False):
     lazy: bool = False
     conditions: tuple[Condition, ...] = ()
     called: tuple[str, ...] = ()
+    started: bool = False
 
 
 class AttributeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -340,7 +342,10 @@ class PythonReader(ObjectUses, SourceText):
         for alias in node.names:
             column = self.find_column(alias.lineno, alias.col_offset)
             module = sys.intern(alias.name)
-            self.imports.append(Import(module, (), 0, alias.lineno, column, self.function, self.conditions))
+            started = alias.lineno in self.main_lines
+            self.imports.append(
+                Import(module, (), 0, alias.lineno, column, self.function, self.conditions, started=started)
+            )
         self.bind_imported(node)
 
     def visit_ImportFrom(self, node: ast.ImportFrom) -> None:
@@ -349,7 +354,7 @@ class PythonReader(ObjectUses, SourceText):
         names = tuple(sys.intern(alias.name) for alias in node.names)
         called = tuple(sys.intern(alias.asname or alias.name) for alias in node.names)
         self.imports.append(Import(module, names, node.level, node.lineno, column, self.function, self.conditions,
-                                   () if called == names else called))  # fmt: skip
+                                   () if called == names else called, node.lineno in self.main_lines))  # fmt: skip
         for alias in node.names:
             if alias.name != "*" and not node.level:
                 column = self.find_column(alias.lineno, alias.col_offset)

@@ -275,7 +275,7 @@ class ObjectUses(PythonValues):
         for one in arguments:
             own = isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name) and one.value.id == "self"
             name = one.attr if own else getattr(one, "id", "")  # type: ignore[attr-defined]
-            if name:
+            if name and not (own and self.inside_class is None):  # of `self` outside of a class, nothing is known
                 owner = str(id(self.inside_class)) if own and self.inside_class is not None else ""
                 self.called_back.setdefault(f"{owner}/{name}", set()).add(given)
 

@@ -256,22 +256,24 @@ class WrittenPath(NamedTuple):
 
 class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What the CMake of a package says. minimum: cmake_minimum_required's version and place. standard: the highest C++
-    standard set for everything (CMAKE_CXX_STANDARD, -std= flags, compile features), None when there is none, with its
-    place. standards: every one, with its place and conditions. standard_default_only: it is only set where the user or
-    a toolchain has not chosen one. standard_by_flag: by -std= flags alone, so that CMake adds what linked targets ask
-    for only where the compiler's default is lower. macros: what is given to the compiler with -D. message_files: what
-    generators of interfaces are given. unresolved: (place, reason) of what could not be known. files: the CMake files
-    read, relative to the root. made: paths that configuring or building writes, or of the tree that git ignores; a
-    folder ends with a slash, and what lies in the build folder starts with ${CMAKE_BINARY_DIR}. starts: files of the
-    package that configuring starts as programs, which may write anything. from_found: paths that
-    start at the CMake folder of a package that is found, with that package. handed_on: what the
-    scripts look for that the package gives to those who find it (CONFIG_EXTRAS, what these include, and extensions that
-    they register). catkin_destinations: catkin_package(), or a macro that calls catkin_destinations() as
-    generate_messages() does, sets where targets are built, so that the devel space has them.
-    before_catkin_destinations: targets that are added before their folders are set. refused: names at which CMake
-    stops. read_elsewhere: the CMake files that it asks for and that do not lie in the package. asked: the packages
-    whose X_FOUND a test reads. stops: each message(FATAL_ERROR) under conditions, with its text. dependency_calls: the
-    calls of ament_target_dependencies(). compared: the words that tests compare ROS_DISTRO with."""
+    standard set for everything (CMAKE_CXX_STANDARD, -std= flags, compile features), None when there is none, with
+    its place. standards: every one, with its place and conditions. standard_default_only: it is only set where the
+    user or a toolchain has not chosen one. standard_by_flag: by -std= flags alone, so that CMake adds what linked
+    targets ask for only where the compiler's default is lower. open_flags: the compiler is given the value of a
+    variable that is not known, which may set one. macros: what is given to the compiler with -D. message_files:
+    what generators of interfaces are given. unresolved: (place, reason) of what could not be known. files: the
+    CMake files read, relative to the root. made: paths that configuring or building writes, or of the tree that git
+    ignores; a folder ends with a slash, and what lies in the build folder starts with ${CMAKE_BINARY_DIR}. starts:
+    files of the package that configuring starts as programs, and other programs of whose answer CMake takes
+    nothing, which all may write anything. from_found: paths that start at the CMake folder of a package that is
+    found, with that package. handed_on: what the scripts look for that the package gives to those who find it
+    (CONFIG_EXTRAS, what these include, and extensions that they register). catkin_destinations: catkin_package(),
+    or a macro that calls catkin_destinations() as generate_messages() does, sets where targets are built, so that
+    the devel space has them. before_catkin_destinations: targets that are added before their folders are set.
+    refused: names at which CMake stops. read_elsewhere: the CMake files that it asks for and that do not lie in the
+    package. asked: the packages whose X_FOUND a test reads. stops: each message(FATAL_ERROR) under conditions, with
+    its text. dependency_calls: the calls of ament_target_dependencies(). compared: the words that tests compare
+    ROS_DISTRO with."""
 
     project: str = ""
     minimum: tuple[str, At] | None = None
@@ -290,6 +292,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     unresolved: tuple[tuple[At, str], ...] = ()
     files: tuple[str, ...] = ()
     standard_by_flag: bool = False
+    open_flags: bool = False
     message_files: tuple[WrittenPath, ...] = ()
     standards: tuple[tuple[int, At, tuple[Condition, ...]], ...] = ()
     macros: tuple[DefinedMacro, ...] = ()

@@ -4,6 +4,7 @@ Source: catkin's API reference and the CMake files of genmsg, actionlib_msgs, dy
 """
 
 import posixpath
+import re
 
 from ...facts.condition import Condition
 from .blocks import CommandCall
@@ -67,13 +68,21 @@ def refuse_late(run: Interpreter, call: CommandCall) -> None:
 
 
 def refuse_unguarded(run: Interpreter, call: CommandCall) -> None:
-    """Refuses a command for tests that stops where tests are switched off. Source:
-    _generate_function_if_testing_is_disabled() of catkin."""
-    tested = any("TESTING" in held.text for held in run.conditions)
+    """Refuses a command for tests that stops where tests are switched off. Who switches on what is off by default asks
+    for it. Source: _generate_function_if_testing_is_disabled() of catkin."""
+    tested = any("TESTING" in held.text or _is_off_by_default(run, held) for held in run.conditions)
     if not tested and not call.name.startswith(("rosbuild", "roslaunch")):
         run.refuse("unguarded", wrap(call.name, call.at, run.conditions))
 
 
+def _is_off_by_default(run: Interpreter, held: Condition) -> bool:
+    """Whether a condition holds only where an option is set that is not set by default."""
+    options = set(re.findall(r"\w+", held.text)) - {"AND", "OR"}
+    values = [run.cache.get(name) for name in options]
+    return not held.negated and bool(values) and all(one is not None and one.text.upper() in _OFF for one in values)
+
+
+_OFF = frozenset(("OFF", "0", "FALSE", "NO", "N"))
 # parse_cmake_arguments() as a script, which it was before CMake 3.5, forgets what followed a keyword that comes again.
 _KEEPS_ALL = Condition("cmake", "CMAKE_VERSION VERSION_LESS 3.5", negated=True)
 

@@ -178,6 +178,7 @@ class Interpreter:
         self.project = ""
         self.minimum: tuple[str, At] | None = None
         self.standards: list[tuple[int, At, bool, bool, tuple[Condition, ...]]] = []
+        self.open_flags = False
         self.macros: dict[DefinedMacro, None] = {}
         self.found: dict[FoundPackage, None] = {}
         self.targets = Targets()
@@ -280,6 +281,7 @@ class Interpreter:
             standard=standard,
             standard_default_only=default_only,
             standard_by_flag=by_flag,
+            open_flags=self.open_flags,
             standards=tuple((number, at, conditions) for number, at, _, _, conditions in self.standards),
             targets=self.targets.finish(),
             catkin_package=self.catkin_package,

@@ -314,9 +314,16 @@ def execute_process(run: Interpreter, call: CommandCall, args: list[Word]) -> No
     begins = [0] if call.name == "exec_program" else [place + 1 for place, word in enumerate(args) if word == "COMMAND"]
     for begin in begins:
         for item in args[begin : begin + 2]:  # a program, or what runs a script and the script
-            path = run.make_relative(item) if item.startswith("/") else None
+            path = run.make_relative(posixpath.join(folder, item)) if f"{folder}{item}".startswith("/") else None
             if path and run.exists(path):
                 run.starts[path] = None
+        if call.name == "execute_process" and "OUTPUT_VARIABLE" not in args and not _is_cmake(args[begin:]):
+            run.starts.update(dict.fromkeys(map(str, args[begin : begin + 1])))
+
+
+def _is_cmake(command: list[Word]) -> bool:
+    """Whether a command is one of CMake's own tools, of which is known what they write."""
+    return command[:1] in (["cmake"], ["${CMAKE_COMMAND}"]) and command[1:2] == ["-E"]
 
 
 _ANSWERS = make_name_set(

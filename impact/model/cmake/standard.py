@@ -52,6 +52,7 @@ def note_variable(run: Interpreter, name: str, text: str, item: Word) -> None:
             run.add_standard(int(text), item.at, is_default(run), False)
     elif name.startswith("CMAKE_CXX_FLAGS"):
         note_flag_macros(run, text)
+        run.open_flags = run.open_flags or "${" in text
         number = parse_flag_standard(text)
         if number:
             run.add_standard(number, item.at, is_default(run), True)
@@ -60,6 +61,7 @@ def note_variable(run: Interpreter, name: str, text: str, item: Word) -> None:
 def note_options(run: Interpreter, items: Iterable[Word]) -> None:
     """Collects a standard that is set with add_compile_options() or add_definitions()."""
     for item in items:
+        run.open_flags = run.open_flags or "${" in item
         number = parse_flag_standard(item)
         if number:
             run.add_standard(number, item.at, is_default(run), True)

@@ -402,6 +402,7 @@ def add_target_options(run: Interpreter, call: CommandCall, args: list[Word]) ->
     seen = "PUBLIC"
     for item in args[1:]:
         seen = str(item) if item in _VISIBILITY else seen
+        run.open_flags = run.open_flags or "${" in item
         draft.standard = max(draft.standard, parse_flag_standard(item), parse_feature_standard(item))
         if seen != "PRIVATE":
             draft.public_standard = max(draft.public_standard, parse_feature_standard(item))
@@ -494,6 +495,7 @@ def set_target_property(run: Interpreter, name: Word, key: str, value: Word) -> 
         if value.isdigit():
             draft.standard = max(draft.standard, int(value))
     elif key in ("COMPILE_FLAGS", "COMPILE_OPTIONS"):
+        run.open_flags = run.open_flags or "${" in value
         draft.standard = max(draft.standard, parse_flag_standard(value))
     elif key in ("OUTPUT_NAME", "LIBRARY_OUTPUT_NAME", "RUNTIME_OUTPUT_NAME"):
         draft.output_name = str(value)

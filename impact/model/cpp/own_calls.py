@@ -54,6 +54,8 @@ def list_own_calls(
                 used = function in called and function in spoken(own_header[other])
             else:
                 used = owner in around and (function in said or f".{function}" in called)
+                # Where the header of the source itself speaks of such a function, that one is meant most likely.
+                used = used and not (own_header[path] and function in spoken(own_header[path]))
             if used and function not in own and not _is_defined_along(name, sources, path, declared):
                 yield path, other, name.removeprefix("::")
                 break

@@ -1100,7 +1100,7 @@ class FlowCode:
         reached = (
             (target, (fn, call))
             for fn, call in calls
-            for target in _select_overloads(self.list_targets(call.callee, fn), call, fn)
+            for target in select_overloads(self.list_targets(call.callee, fn), call, fn)
         )
         return group_pairs((target, caller) for target, caller in reached if caller[0] is not target)
 
@@ -1320,7 +1320,7 @@ def _rate_nearness(cls: Cls, source: CodeFile, scope: str) -> int:
     return near + (_is_within(scope, get_outer(cls.name)) if get_outer(cls.name) else 0)
 
 
-def _select_overloads(targets: list[Fn], call: FlowCall, fn: Fn) -> list[Fn]:
+def select_overloads(targets: list[Fn], call: FlowCall, fn: Fn) -> list[Fn]:
     """Of functions of one name in C++ those that take as many arguments as a call has, and of these those that take
     variables of the types it gives; all where none does."""
     if len(targets) < 2 or targets[0].source.facts.language != "cpp":

@@ -106,7 +106,7 @@ class Contexts:
         for cls, row in rows:
             chain = self.code.list_bases(cls)
             constructors = [one for each in chain for one in self.code.list_functions(each) if self._begins(one)]
-            if any(one in values.made for one in constructors):
+            if any(values.find_makers(one) is not None for one in constructors):
                 continue  # it is known already which objects these are
             limited = values.limit_to_objects({**values.made, **self.find_made(chain, [row])})
             guard = max(row[0].collect_guards(row[2]), default=-1)

@@ -4,7 +4,7 @@ and of what is looked up by a place or a key."""
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from ...facts.flow import Assignment, FlowCall, FlowExpr
@@ -55,17 +55,19 @@ class HeldList(NamedTuple):
 
 
 class Elements:
-    """The elements of the lists and dictionaries of a body of code. runs: which functions run; way: the only call
-    through which a function is reached; made: by constructor who gives it its arguments, where that is known. given:
-    what a launch makes of an expression; find_turn: the only turn of the loop that begins on a line, None for any."""
+    """The elements of the lists and dictionaries of a body of code. runs: which functions run; find_only: the only
+    call through which a function is reached, and find_makers: who in particular gives a constructor its arguments, None
+    for any. given: what a launch makes of an expression; find_turn: the only turn of the loop that begins on a line,
+    None for any."""
 
     def __init__(
-        self, code: FlowCode, runs: Callable[[Fn], bool] = lambda fn: True, way: Mapping[Fn, FlowCall] | None = None,
-        made: Mapping[Fn, Sequence[Made]] | None = None,
+        self, code: FlowCode, runs: Callable[[Fn], bool] = lambda fn: True,
+        find_only: Callable[[Fn], FlowCall | None] = lambda fn: None,
+        find_makers: Callable[[Fn], Sequence[Made] | None] = lambda fn: None,
         given: Callable[[FlowExpr, Fn, int], list[ListElement] | None] = lambda value, fn, line: None,
         find_turn: Callable[[Fn, int], int | None] = lambda fn, line: None,
     ):  # fmt: skip
-        self.code, self._runs, self._way, self._made = code, runs, way or {}, made or {}
+        self.code, self._runs, self._find_only, self._find_makers = code, runs, find_only, find_makers
         self._find_given, self._find_turn = given, find_turn
         self._left = 0
 
@@ -313,14 +315,14 @@ class Elements:
         place = find_parameter(fn, variable.name) if variable.kind == "local" else None
         if place is None:
             return
-        only = self._way.get(fn)
+        only = self._find_only(fn)
         called = (
             (caller, call.arguments, call.line)
             for caller, call in self.code.callers.get(fn, ())
             if only is None or call is only
         )
         default = self.code.find_default(fn, *place)
-        for giver, arguments, line in self._made.get(fn) or (*called, *self.code.list_constructed(fn)):
+        for giver, arguments, line in self._find_makers(fn) or (*called, *self.code.list_constructed(fn)):
             given = find_argument(arguments, place[0], variable.name) if self._runs(giver) else None
             if given is not None:
                 yield ListElement(given, giver, line)

@@ -722,8 +722,11 @@ class Join:
 
     def _list_parameters(self, owners: _Owners, count: _Count) -> Iterator[ParameterUse]:
         for use in self.calls.select_uses("parameter"):
-            for place, values in self._list_asked(use):
-                those = owners.list_owners(place, () if place is use else (use,))
+            places = self._list_askers(use)
+            running = [owners.list_owners(place, () if place is use else (use,)) for place in places]
+            if not any(running):
+                continue
+            for place, values, those in zip(places, self._list_asked(use), running, strict=True):
                 made = list(self._make_parameters(use, place, values, those))
                 for owner in those if made else ():
                     owners.use(owner)
@@ -734,22 +737,39 @@ class Join:
                     count.unresolved.append(Unresolved("parameter name", reason, *_get_place(place), written))
                 yield from made
 
-    def _list_asked(self, use: FrameworkCall) -> Iterator[tuple[FrameworkCall, list[FlowValue]]]:
-        """Where the parameter of a use is asked for, with its names: by those that call a function which is called like
-        the framework's, where these calls are no uses themselves; else where the use stands."""
+    @cache_method
+    def _list_askers(self, use: FrameworkCall) -> list[FrameworkCall]:
+        """Where the parameter of a use is asked for: by those that call a function which is called like the
+        framework's, where these calls are no uses themselves; else where the use stands."""
         if not self.sites.wraps(use.fn, "parameter") or not self._is_asked_by_callers(use):
-            yield use, self.list_parameter_names(use)
-            return
-        argument = self.calls.find_argument(use, use.row.topic)
-        lost: list[FlowValue] = []
+            return [use]
+        found: list[FrameworkCall] = []
         for caller, call in self.code.callers.get(use.fn, ()):
             own = self.calls.find_use(caller, call)
             if caller is not use.fn and (own is None or own.row.does != "parameter"):
-                values = self.values.limit_to_held(call, caller).limit_to_calls({use.fn: call})
-                found = lost or values.evaluate(argument, use.fn, use.call.line)
-                if any(one.reason == TOO_MANY for one in found):
-                    lost = found  # nor is it known for the others, at the same cost each
-                yield use._replace(fn=caller, call=call), found
+                found.append(use._replace(fn=caller, call=call))
+        return found
+
+    @cache_method
+    def _list_asked(self, use: FrameworkCall) -> list[list[FlowValue]]:
+        """The names of the parameter of a use in each place where it is asked for; the same in every node."""
+        argument = self.calls.find_argument(use, use.row.topic)
+        # By what is known of who makes the objects, which is the same for all methods of a class.
+        lost: dict[int, list[FlowValue]] = {}
+        names: list[list[FlowValue]] = []
+        for place in self._list_askers(use):
+            if place is use:
+                names.append(self.list_parameter_names(use))
+                continue
+            held = self.values.limit_to_held(place.call, place.fn)
+            objects = id(held.made) if held.made else 0
+            found = lost.get(objects) or held.limit_to_calls({use.fn: place.call}).evaluate(
+                argument, use.fn, use.call.line
+            )
+            if any(one.reason == TOO_MANY for one in found):
+                lost[objects] = found  # nor is it known for others in these objects, at the same cost each
+            names.append(found)
+        return names
 
     def _is_asked_by_callers(self, use: FrameworkCall) -> bool:
         """Whether what a function called like the framework's reads is what its callers name: for one without a class,
@@ -974,6 +994,7 @@ class Join:
         found = find_parameter(fn, inner.text) if inner is not None and inner.kind == "name" else None
         return find_argument(call.arguments, found[0], found[1].name) if found is not None else value
 
+    @cache_method
     def _spell_parameter_in_part(self, use: FrameworkCall) -> str:
         """The name of a parameter with brackets for what is not known of it; empty where none of it is known."""
         written = self.calls.find_argument(use, use.row.topic)

@@ -3,8 +3,9 @@ derive from the same base give."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
+from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from .code import FlowCode, Fn, Made, Variable
 from .types import Cls
@@ -41,16 +42,33 @@ class Makers:
         owner = self.code.find_owner(fn)
         return owner is not None and owner.key in keys
 
-    def find_outer(self, fn: Fn, maker: Fn, made: Mapping[Fn, Sequence[Made]]) -> Mapping[Fn, Sequence[Made]] | None:
-        """Who gives constructors their arguments in the object that a function is of; None where that is known already.
-        fn: what the function calls, or the constructor of what it makes; maker: the function; made: what is known."""
-        cls, around = self.code.find_owner(fn), self.code.find_owner(maker)
-        if around is None or (cls is not None and cls in self.code.list_bases(around)):
-            return None
-        inside = self.find_inside(around)
-        if all(self._is_within(made.get(one), rows) for one, rows in inside.items()):
-            return None
-        return {**made, **{one: rows for one, rows in inside.items() if not self._is_within(made.get(one), rows)}}
+    def find_outer(
+        self, key: str, around: Cls, find_makers: Callable[[Fn], Sequence[Made] | None]
+    ) -> dict[Fn, Sequence[Made]]:  # fmt: skip
+        """Who gives constructors their arguments in objects of a class, where that is not known already. key: of the
+        class whose objects are known, empty for none; find_makers: what is known."""
+        if key and key in self._list_keys(around):
+            return {}
+        rows = self.find_inside(around).items()
+        return {one: inside for one, inside in rows if not self._is_within(find_makers(one), inside)}
+
+    @cache_method
+    def _list_keys(self, cls: Cls) -> frozenset[str]:
+        return frozenset(one.key for one in self.code.list_bases(cls))
+
+    @cache_method
+    def is_replaced(self, variable: Variable) -> bool:
+        """Whether each object of a class is surely given a member by the function that makes it, so that what the
+        member is declared with never holds."""
+        made = self.code.constructions.get(variable.owner, ()) if variable.kind == "member" else ()
+        written = group_pairs(self.code.list_writes(variable)) if made else {}
+        for maker, _, line in made:
+            around = {place for guard in maker.collect_guards(line) for place in maker.list_guards_around(guard)}
+            rows = [each for each in written.get(maker, ()) if each.operator == "=" and each.line >= line]
+            sure = (each for each in rows if each.guard < 0 or each.guard in around)
+            if all(each.target.startswith("this.") for each in sure):
+                return False
+        return bool(made)
 
     @staticmethod
     def _is_within(known: Sequence[Made] | None, rows: Sequence[Made]) -> bool:
@@ -63,8 +81,7 @@ class Makers:
 
     def leave_out(self, seen: tuple, cls: Cls) -> tuple:
         """What is being evaluated, without what is of an object of a class: it may be asked for in another one."""
-        keys = {one.key for one in self.code.list_bases(cls)}
-        functions = self.list_own(cls)
+        keys, functions = self._list_keys(cls), self.list_own(cls)
         places = {fn.place for fn in functions}
 
         def is_own(item: object) -> bool:

@@ -93,16 +93,20 @@ class ReachingValues:
         found = self._list_left()
         if len({one.value.text for one in found if one.value.text is not None}) < 2:
             return [one.value for one in found]
+        around = {one.guard: self._list_conditional(one.guard) for one in found}
+        # Of what may take the place of others, the condition that is the nearest.
+        later = [(one.value.text, guard) for one in found if not one.stays for guard in around[one.guard][:1]]
+        later = list(dict.fromkeys(row for row in later if row[0] is not None))
         chosen: list[FlowValue] = []
         for one in found:
-            guards = self._list_conditional(one.guard)
-            condition = spell(guards)
-            if not one.stays and not guards:
-                later = [other for other in found if other.value.text not in (None, one.value.text) and not other.stays]
-                others = dict.fromkeys(guard for other in later for guard in self._list_conditional(other.guard)[:1])
-                condition = " && ".join(filter(None, map(negate, others)))
+            guards = around[one.guard]
             known = one.value.text is not None and not one.value.only_if
-            chosen.append(one.value._replace(only_if=condition) if known and condition else one.value)
+            if not known or one.stays or guards:
+                condition = spell(guards) if known else ""
+            else:
+                others = dict.fromkeys(guard for text, guard in later if text != one.value.text)
+                condition = " && ".join(filter(None, map(negate, others)))
+            chosen.append(one.value._replace(only_if=condition) if condition else one.value)
         return chosen
 
     def list_values(self) -> list[FlowValue]:

@@ -17,7 +17,7 @@ from ...facts.python.flow_expressions import LONGEST_OTHER, make_join
 from ...facts.python.text import format_pieces
 from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
-from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number
+from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number, select_overloads
 from .conditions import ConditionReader, DecidedCondition, is_truth
 from .elements import SETTING, Elements, ListElement, find_begun
 from .given_lists import GivenLists
@@ -27,7 +27,7 @@ from .makers import Makers
 from .names import is_open, make_open_part, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
 from .reaching import LOOPS, FlowValue, ReachingValues
-from .types import split_name
+from .types import Cls, split_name
 
 _Row = TypeVar("_Row")
 
@@ -97,20 +97,24 @@ class Work:
     functions with lines of which it was asked which guard there is; settings: those that were asked for; runs, idle:
     functions that were asked for whether they run, and do or do not; is_limited: whether only some functions run; free:
     functions that any call was taken of; ways: those of which the only call was; unmade: functions that nobody in
-    particular makes; makers: who makes the others; made: all of these; is_open: whether a launch gives anything. Where
-    nothing asked, made and what is true or false are None, and arguments is UNASKED. higher, lower: by how much the
+    particular makes; makers: who makes the others; is_made: whether anything is made by somebody in particular;
+    is_open: whether a launch gives anything. Where nothing asked, what is true or false is None, and arguments is
+    UNASKED. higher, lower: by how much the
     number of things that are being evaluated could be larger or smaller without another answer of those that ask for
     it. turns: those of loops that were asked for, None for any; below: the settings below a prefix that were asked for.
-    is_alone: whether nothing else had a part in it that may be otherwise another time. way, chosen: the calls and the
-    turns of whoever works it out."""
+    is_alone: whether nothing else had a part in it that may be otherwise another time. way, chosen, held: the calls,
+    the turns and the makers of whoever works it out; what others chose on the way follows from these."""
 
     __slots__ = (
-        "arguments", "below", "chosen", "free", "higher", "idle", "is_alone", "is_limited", "is_open", "items",
-        "lines", "lower", "made", "makers", "runs", "settings", "turns", "unmade", "way", "ways",
+        "arguments", "below", "chosen", "free", "held", "higher", "idle", "is_alone", "is_limited", "is_made",
+        "is_open", "items", "lines", "lower", "makers", "runs", "settings", "turns", "unmade", "way", "ways",
     )  # fmt: skip
 
-    def __init__(self, way: Mapping[Fn, FlowCall], chosen: Mapping[tuple[str, int], int] = {}):
-        self.way, self.chosen = way, chosen
+    def __init__(
+        self, way: Mapping[Fn, FlowCall], chosen: Mapping[tuple[str, int], int] = {},
+        held: Mapping[Fn, Sequence[Made]] = {},
+    ):  # fmt: skip
+        self.way, self.chosen, self.held = way, chosen, held
         self.turns: dict[tuple[str, int], int | None] = {}
         self.items: set[tuple] = set()
         self.lines: set[tuple[Fn, int]] = set()
@@ -122,7 +126,7 @@ class Work:
         self.ways: dict[Fn, FlowCall] = {}
         self.unmade: set[Fn] = set()
         self.makers: dict[Fn, Sequence[Made]] = {}
-        self.made: Mapping[Fn, Sequence[Made]] | None = None
+        self.is_made: bool | None = None
         self.arguments: tuple[str, ...] | None = UNASKED
         self.is_limited: bool | None = None
         self.is_open: bool | None = None
@@ -142,9 +146,10 @@ class Work:
         for loop, turn in other.turns.items():
             self.note_turn(loop, turn)
         self.unmade |= other.unmade
-        self.makers.update(other.makers)
-        if other.made is not None:
-            self.made = other.made
+        for fn, made in other.makers.items():
+            self.note_maker(fn, made)
+        if other.is_made is not None:
+            self.is_made = other.is_made
         if other.is_limited is not None:
             self.is_limited = other.is_limited
         self.note_given(other)
@@ -175,10 +180,10 @@ class Work:
             self.turns[loop] = turn
 
     def note_maker(self, fn: Fn, made: Sequence[Made] | None) -> None:
-        """Notes who in particular makes a function's objects."""
+        """Notes who in particular makes a function's objects, other than those who were chosen on the way here."""
         if made is None:
             self.unmade.add(fn)
-        else:
+        elif self.held.get(fn) == made:
             self.makers[fn] = made
 
     def note_depth(self, most: int, depth: int) -> None:
@@ -230,6 +235,8 @@ class FlowValues:
         self._prefixes: dict[int, str] = {}
         self._asked_prefixes: set[int] = set()
         self._left = _MOST_STEPS
+        # How much more is being evaluated than was come to step by step: what stands for objects that make others.
+        self._outer = 0
         self._budget = [_STEPS_IN_ALL + _STEPS_A_FUNCTION * len(self.code.functions)]
         # Decided guards, each with what it rests on.
         self._decided: dict[tuple, list[tuple[Work, DecidedCondition]]] = {}
@@ -310,6 +317,7 @@ class FlowValues:
         for name in ("filled", "declared", "command_line", "origins", "parameter_words", "makers"):
             other.__dict__[name] = getattr(self, name)
         other._budget, other._decided = self._budget, self._decided
+        other._outer = self._outer
         other._known, other._works, other._asking = self._known, self._works, self._asking
         other.find_prefix, other._prefixes = self.find_prefix, self._prefixes
         other._asked_prefixes = self._asked_prefixes
@@ -335,20 +343,18 @@ class FlowValues:
 
     def list_values(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
         """The same with all that is not known."""
-        most = _MOST_STEPS if self._budget[0] > 0 else _FEW_STEPS
-        self._left = most
-        found = list(dict.fromkeys(self._evaluate(value, fn, line, ())))
-        self._budget[0] -= most - max(self._left, 0)
-        return found
+        self._left = _MOST_STEPS if self._budget[0] > 0 else _FEW_STEPS
+        return list(dict.fromkeys(self._evaluate(value, fn, line, ())))
 
     def _evaluate(self, value: FlowExpr | None, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         if value is None:
             yield FlowValue(None, "unresolved", "no value is given")
             return
         self._left -= 1
+        self._budget[0] -= 1
         if self._works:
-            self._works[-1].note_depth(_DEEPEST, len(seen))
-        if len(seen) > _DEEPEST or self._left < 0:
+            self._works[-1].note_depth(_DEEPEST, len(seen) - self._outer)
+        if len(seen) - self._outer > _DEEPEST or self._left < 0:
             yield FlowValue(None, "unresolved", TOO_MANY)
             return
         kind = value.kind
@@ -466,7 +472,7 @@ class FlowValues:
 
     def record(self, work_out: Callable[[], _Row]) -> tuple[_Row, Work]:
         """What a function gives, and on what that rests."""
-        work = Work(self.way, self.turns)
+        work = Work(self.way, self.turns, self.made)
         self._works.append(work)
         try:
             return work_out(), work
@@ -542,7 +548,8 @@ class FlowValues:
     @cached_property
     def elements(self) -> Elements:
         """What lists and dictionaries of the code hold."""
-        return Elements(self.code, self.runs, self.way, self.made, GivenLists(self).find, self.find_turn)
+        asked = (self.runs, self.find_only_call, self.find_makers, GivenLists(self).find, self.find_turn)
+        return Elements(self.code, *asked)
 
     def _evaluate_chosen(
         self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
@@ -647,10 +654,6 @@ class FlowValues:
     def _list_given_elements(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         """The elements of a list of texts that a launch gives to a parameter; nothing where it may be another list."""
         if value.kind not in ("name", "call"):
-            return
-        if self._works:
-            self._works[-1].note_depth(_FAR, len(seen))
-        if len(seen) > _FAR:
             return
         if self._works:
             self._works[-1].is_open = bool(self.settings or self.arguments)
@@ -762,13 +765,16 @@ class FlowValues:
             return self.limit_to_class(fn)
         kind = self.code.resolve_name_type(head, fn) if not head.endswith("()") else None
         cls = self.code.find_class_of(kind, fn) if kind is not None and kind.name else None
-        made = self.makers.find_inside(cls) if cls is not None and not self.made else {}
-        return self.limit_to_objects(made) if made else self
+        return self._limit_to_objects_of(cls)
 
     def limit_to_class(self, fn: Fn) -> FlowValues:
         """The same in objects of the class of a method alone: what other classes give its bases is not theirs."""
-        owner = self.code.find_owner(fn)
-        made = self.makers.find_inside(owner) if owner is not None and not self.made else {}
+        return self._limit_to_objects_of(self.code.find_owner(fn))
+
+    def _limit_to_objects_of(self, cls: Cls | None) -> FlowValues:
+        if self._works:
+            self._works[-1].is_made = bool(self.made)
+        made = self.makers.find_inside(cls) if cls is not None and not self.made else {}
         return self.limit_to_objects(made) if made else self
 
     def evaluate_variable(
@@ -785,7 +791,7 @@ class FlowValues:
             if self._holds_again(known, seen):
                 self._left -= known.steps
                 if self._works:
-                    self._works[-1].note(known.rests, len(seen) - known.depth)
+                    self._works[-1].note(known.rests, len(seen) - self._outer - known.depth)
                 yield from known.values
                 return
         before = self._left
@@ -796,13 +802,14 @@ class FlowValues:
             self._works[-1].is_alone &= work.is_alone
         if work.is_alone and self._left >= 0:
             within, asking = frozenset(work.items.intersection(seen)), _list_asking(seen, work.lines)
-            rows.append(_Known(values, work, within, asking, len(seen), before - self._left))
+            depth = len(seen) - self._outer
+            rows.append(_Known(values, work, within, asking, depth, before - self._left))
             del rows[:-_MOST_KNOWN]
         yield from values
 
     def _holds_again(self, known: _Known, seen: tuple) -> bool:
         """Whether values that were worked out are those of now. seen: what is being evaluated."""
-        rests, further = known.rests, len(seen) - known.depth
+        rests, further = known.rests, len(seen) - self._outer - known.depth
         return (
             self._left >= known.steps
             and -rests.lower <= further <= rests.higher
@@ -822,12 +829,26 @@ class FlowValues:
             and (not rests.ways or all(way.get(fn) is call for fn, call in rests.ways.items()))
             and (not made or rests.unmade.isdisjoint(made))
             and (not rests.makers or all(made.get(fn) == rows for fn, rows in rests.makers.items()))
-            and (rests.made is None or rests.made is made)
+            and (rests.is_made is None or rests.is_made == bool(made))
             and (not rests.turns or all(self.turns.get(loop) == turn for loop, turn in rests.turns.items()))
             and (rests.arguments is UNASKED or rests.arguments == self.arguments)
             and all(self.list_settings_below(prefix) == given for prefix, given in rests.below.items())
             and (not rests.settings or all(self.find_setting(name) == v for name, v in rests.settings.items()))
         )
+
+    def find_makers(self, fn: Fn) -> Sequence[Made] | None:
+        """Who in particular gives a constructor its arguments; None for whoever makes an object of its class."""
+        made = self.made.get(fn)
+        if self._works:
+            self._works[-1].note_maker(fn, made)
+        return made
+
+    def find_only_call(self, fn: Fn) -> FlowCall | None:
+        """The only call through which a function is reached; None for any."""
+        only = self.way.get(fn)
+        if self._works:
+            self._works[-1].note_way(fn, only)
+        return only
 
     def _note_arguments(self) -> None:
         """Notes that the arguments of the command line were asked for."""
@@ -891,16 +912,17 @@ class FlowValues:
             _is_of_parameters(passed_on) and self._is_passed_before(variable, fn, filled_before)
         )
         # In Python that is an assignment too.
-        if not begun and not given and not remade and (not rows or fn.source.facts.language == "cpp"):
+        elsewhere = any("." in each.target.removeprefix("this.") for _, each in rows)
+        replaced = elsewhere and self.makers.is_replaced(variable)
+        begins = not rows or (fn.source.facts.language == "cpp" and not replaced)
+        if not begun and not given and not remade and begins:
             found.add(self._evaluate_beginning(variable, fn, seen), rank=0)
         for writer, others in group_pairs(row for row in rows if row[0] is not fn or not line).items():
             if remade and writer is not fn and self.code.is_constructor(writer):
                 continue
-            if self._works:
-                self._works[-1].note_maker(writer, self.made.get(writer))
-            if writer in self.made and self._is_made_otherwise(writer):
+            if self.find_makers(writer) is not None and self._is_made_otherwise(writer):
                 continue
-            found.add(self._evaluate_elsewhere(variable, writer, others, filled, origins, seen), stays=True)
+            found.add(self._evaluate_outside(variable, writer, others, filled, origins, seen), stays=True)
         here = [(use, values) for use, values in filled if use.fn is fn and use.call.line < line]
         for use, values in filled:
             if not (use.fn is fn and use.call.line < line):
@@ -944,11 +966,10 @@ class FlowValues:
 
     def _is_made_otherwise(self, fn: Fn) -> bool:
         """Whether the objects that it is about are made by other constructors than this one."""
-        if self._works:
-            self._works[-1].made = self.made
         owner = self.code.find_owner(fn)
-        others = (one for one, rows in self.made.items() if rows and self.code.find_owner(one) is owner)
-        return not self.made[fn] and any(others)
+        if self.made[fn] or owner is None:
+            return False
+        return any([self.find_makers(one) for one in self.code.list_functions(owner)])
 
     def _evaluate_beginning(self, variable: Variable, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
         """What a member or a variable outside of functions is declared with."""
@@ -993,6 +1014,20 @@ class FlowValues:
         may = [row for row in rows if not self.command_line.excludes(row[0], row[1].guard, self.arguments)]
         given = [row for row in may if self.command_line.is_option_given(row[0], row[1].guard, self.arguments)]
         return given or may, bool(given)
+
+    def _evaluate_outside(
+        self, variable: Variable, writer: Fn, rows: list[Assignment],
+        filled: list[tuple[FrameworkCall, list[FlowValue]]], origins: Origins | None, seen: tuple,
+    ) -> list[FlowValue]:  # fmt: skip
+        """What a function writes into a variable, as it is in the object that the function is of."""
+        mark = ("writes", variable, writer)
+        inside = self._step_out(variable.owner, mark, writer, seen) if variable.kind == "member" else None
+        if inside is None or self._is_in(mark, seen):
+            return self._evaluate_elsewhere(variable, writer, rows, filled, origins, seen)
+        values, inner = inside
+        found = values._evaluate_elsewhere(variable, writer, rows, filled, origins, inner)
+        self._left = values._left
+        return found
 
     def _evaluate_elsewhere(
         self, variable: Variable, writer: Fn, rows: list[Assignment],
@@ -1050,8 +1085,8 @@ class FlowValues:
         is_open = bool(self.settings or self.arguments)
         if self._works:
             self._works[-1].is_open = is_open
-            self._works[-1].note_depth(_NEAR, len(seen))
-        if not is_open or len(seen) > _NEAR:
+            self._works[-1].note_depth(_NEAR, len(seen) - self._outer)
+        if not is_open or len(seen) - self._outer > _NEAR:
             return DecidedCondition()
         opens = True
         for place in fn.list_guards_around(guard):
@@ -1122,8 +1157,8 @@ class FlowValues:
         """What functions write into a variable that is passed to them by reference."""
         passed = self.code.list_passed(variable)
         if passed and self._works:
-            self._works[-1].note_depth(_FAR, len(seen))
-        if len(seen) > _FAR:
+            self._works[-1].note_depth(_FAR, len(seen) - self._outer)
+        if len(seen) - self._outer > _FAR:
             return  # from hand to hand: a walk over everything that is passed on would not end in time
         for caller, call, place in passed:
             for target in self.code.list_targets(call.callee, caller):
@@ -1175,13 +1210,10 @@ class FlowValues:
     def _evaluate_passed(self, fn: Fn, place: int, parameter: FlowParameter, seen: tuple) -> Iterator[FlowValue]:
         """What callers pass for a parameter, and its default where one of them, or nobody that is known, passes it."""
         given, lacking = False, False
-        only = self.way.get(fn)
-        if self._works:
-            self._works[-1].note_way(fn, only)
-            self._works[-1].note_maker(fn, self.made.get(fn))
+        only, made = self.find_only_call(fn), self.find_makers(fn)
         calls = ((caller, call.arguments, call.line) for caller, call in self.code.callers.get(fn, ())
                  if only is None or call is only)  # fmt: skip
-        for caller, arguments, line in self.made.get(fn) or (*calls, *self.code.list_constructed(fn)):
+        for caller, arguments, line in made or (*calls, *self.code.list_constructed(fn)):
             if self.runs(caller):
                 argument = find_argument(arguments, place, parameter.name)
                 given, lacking = given or argument is not None, lacking or argument is None
@@ -1197,42 +1229,46 @@ class FlowValues:
     def _evaluate_made(self, value: FlowExpr, fn: Fn, maker: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         """What a function gives another one: where that makes an object, as it is in the object that the maker is of.
         fn: whom it is given; maker: who gives it."""
-        outer = self.makers.find_outer(fn, maker, self.made)
-        owner = self.code.find_owner(maker)
-        if outer is None or owner is None:
+        cls = self.code.find_owner(fn)
+        mark = ("makes", fn, maker, line)
+        inside = self._step_out(cls.key if cls is not None else "", mark, maker, seen)
+        if inside is None:
             yield from self._evaluate(value, maker, line, seen)
             return
-        item = ("makes", fn, maker, line)
-        if self._is_in(item, seen):
+        if self._is_in(mark, seen):
             yield FlowValue(None, "unresolved", f"`{maker.name}` makes objects that make it again")
             return
-        inner = (*self.makers.leave_out(seen, owner), item)
-        if len(inner) <= len(seen) or any(one in self.made for one in outer if outer[one] is not self.made.get(one)):
-            self._note_others()
-        values = self.limit_to_objects(outer)
-        values._left = self._left
+        values, inner = inside
         yield from values._evaluate(value, maker, line, inner)
         self._left = values._left
 
+    def _step_out(self, key: str, mark: tuple, fn: Fn, seen: tuple) -> tuple[FlowValues, tuple] | None:
+        """The same in objects of the class of a function, and what is being evaluated there; None where these are the
+        objects that it is about, or no others are known. key: of the class whose objects it is about."""
+        owner = self.code.find_owner(fn)
+        outer = self.makers.find_outer(key, owner, self.find_makers) if owner is not None else None
+        if not outer or owner is None:
+            return None
+        inner = (*self.makers.leave_out(seen, owner), mark)
+        values = self.limit_to_objects({**self.made, **outer})
+        # What is left out, and the mark, change nothing of how deep it is.
+        values._left, values._outer = self._left, self._outer + len(inner) - len(seen)
+        return values, inner
+
     def list_given(self, fn: Fn, place: int, name: str) -> Iterator[tuple[FlowExpr, Fn, int]]:
         """What those that run give for a parameter of a function, with who does and at which line."""
-        only = self.way.get(fn)
-        if self._works:
-            self._works[-1].note_way(fn, only)
-            self._works[-1].note_maker(fn, self.made.get(fn))
+        only, made = self.find_only_call(fn), self.find_makers(fn)
         rows = [(caller, call.arguments, call.line) for caller, call in self.code.callers.get(fn, ())
                 if only is None or call is only]  # fmt: skip
         rows += [(binder, arguments, 0) for binder, arguments in self.code.bound.get(fn, ())]
-        for giver, arguments, line in self.made.get(fn) or (*rows, *self.code.list_constructed(fn)):
+        for giver, arguments, line in made or (*rows, *self.code.list_constructed(fn)):
             argument = find_argument(arguments, place, name) if self.runs(giver) else None
             if argument is not None:
                 yield argument, giver, line
 
     def is_left_out(self, fn: Fn) -> bool:
         """Whether a function is a constructor that makes none of the objects which these values are about."""
-        if self._works:
-            self._works[-1].note_maker(fn, self.made.get(fn))
-        return fn in self.made and self._is_made_otherwise(fn)
+        return self.find_makers(fn) is not None and self._is_made_otherwise(fn)
 
     def _find_given(self, value: FlowExpr, fn: Fn) -> tuple[int, FlowParameter] | None:
         """The parameter of a constructor that a value is, None for all else."""
@@ -1390,12 +1426,14 @@ class FlowValues:
                 yield from self._evaluate(call.arguments[0], fn, line, seen)
                 return
         returned = False
-        for target in self.code.list_targets(callee, fn):
+        only = near[0] if near and arguments is not None else None
+        targets = self.code.list_targets(callee, fn)
+        for target in targets if only is None else select_overloads(targets, only, fn):
             if self._is_in(("returns", target), seen):
                 continue
             inner = (*seen, ("returns", target))
             # Through this call alone, where it is seen.
-            values = self.limit_to_calls({**self.way, target: near[0]} if near and arguments is not None else {})
+            values = self.limit_to_calls({**self.way, target: only} if only is not None else {})
             values._left = self._left
             for each in target.facts.assignments:
                 if each.operator == "return":

@@ -23,6 +23,7 @@ from .text import (
     evaluate,
     format_flag,
     join_texts,
+    make_either,
     make_unknown,
     merge_reasons,
     parse_ros1_value,
@@ -305,7 +306,7 @@ class Filling:
             if yes.value is not None and yes.value == no.value:
                 return yes
             reasons = asked.reasons or (f"`{asked.value}` is neither true nor false",)
-            return make_unknown(f"{yes.shown} or {no.shown}", *reasons)
+            return make_either(yes.shown, no.shown, *reasons)
         return self.fill(piece.parts[1 if truth else 2])
 
     def fill_method(self, piece: ValuePart) -> LaunchText:

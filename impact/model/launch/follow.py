@@ -22,6 +22,7 @@ from .fill import OF_RUNNING, ActionScope, ChangedFiles, Filling
 from .result import EMPTY, Launched, LaunchParameter, LaunchSources, Remap, SettingFile, ShareLine, Started
 from .text import (
     LaunchText,
+    make_either,
     make_unknown,
     parse_truth,
     resolve,
@@ -197,8 +198,8 @@ class _Launch(Filling):
                 return
             if before is None:
                 self.scope.maybe[name] = text
-            shown = text.shown if before is None else f"{before.shown} or {text.shown}"
-            text = make_unknown(shown, f"`{name}` is set only if {self.open[-1]}")
+            reason = f"`{name}` is set only if {self.open[-1]}"
+            text = make_unknown(text.shown, reason) if before is None else make_either(before.shown, text.shown, reason)
         else:
             self.scope.maybe.pop(name, None)
         self.scope.arguments[name] = text
@@ -223,7 +224,7 @@ class _Launch(Filling):
             before, text = self.scope.maybe.pop(name), self.fill(default)
             if before.value is None or before.value != text.value:
                 reasons = (*before.reasons, *text.reasons, *self.scope.arguments[name].reasons)
-                text = make_unknown(f"{before.shown} or {text.shown}", *reasons)
+                text = make_either(before.shown, text.shown, *reasons)
             self.scope.arguments[name] = text
         self.declared.add(name)
 
@@ -271,8 +272,8 @@ class _Launch(Filling):
     def push(self, namespace: LaunchText) -> None:
         """Makes a namespace, which is absolute, the one that holds; one under an undecided condition is not known."""
         if self.is_uncertain() and namespace.value != self.scope.namespace.value:
-            namespace = make_unknown(
-                f"{self.scope.namespace.shown or '/'} or {namespace.shown}", f"pushed only if {self.open[-1]}"
+            namespace = make_either(
+                self.scope.namespace.shown or "/", namespace.shown, f"pushed only if {self.open[-1]}"
             )
         self.scope.namespace = namespace
 
@@ -399,7 +400,7 @@ class _Launch(Filling):
     ) -> None:  # fmt: skip
         before = self.server.pop(name, None)
         if self.open and before is not None and before.text.value != text.value:
-            text = make_unknown(f"{before.text.shown} or {text.shown}", f"set only if {self.open[-1]}")
+            text = make_either(before.text.shown, text.shown, f"set only if {self.open[-1]}")
         self.server[name] = LaunchParameter(name, text, self.locate_line(line), tuple(self.open), source, type_)
 
     def serve_file(self, action: Action, namespace: LaunchText) -> None:

@@ -12,7 +12,7 @@ from typing import NamedTuple, Protocol
 from ...facts.launch.actions import LaunchFile
 from ...facts.launch.parameter_files import ParameterEntry, ParameterFile
 from ..flow.names import normalise
-from .text import LaunchText, make_unknown, wrap
+from .text import LaunchText, make_either, wrap
 
 EMPTY = wrap("")
 
@@ -72,7 +72,7 @@ class LaunchParameter(NamedTuple):
         if before.text.value is not None and before.text.value == self.text.value:
             return before
         reason = f"set only if {self.conditions[-1]}"
-        text = make_unknown(f"{before.text.shown} or {self.text.shown}", *before.text.reasons, reason)
+        text = make_either(before.text.shown, self.text.shown, *before.text.reasons, reason)
         return self._replace(text=text, conditions=before.conditions)
 
 

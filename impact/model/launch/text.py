@@ -38,6 +38,37 @@ def make_unknown(shown: str, *reasons: str) -> LaunchText:
     return LaunchText(None, f"<{shown}>", reasons)
 
 
+_BETWEEN = " or "
+_MOST_EITHER, _MORE = 6, "..."
+
+
+def make_either(first: str, second: str, *reasons: str) -> LaunchText:
+    """A text that is one of two, as each is shown: `<a or b>`. Each of what they may be stands once, however often it
+    was put over another, and no more of them than a person reads."""
+    found = list(dict.fromkeys(each for shown in (first, second) for each in _list_either(shown)))
+    if len(found) == 1 and "<" in found[0]:
+        return LaunchText(None, found[0], reasons)
+    if len(found) > _MOST_EITHER or _MORE in found:
+        found = [*[each for each in found if each != _MORE][:_MOST_EITHER], _MORE]
+    return make_unknown(_BETWEEN.join(found), *reasons)
+
+
+def _list_either(shown: str) -> list[str]:
+    """What a text that make_either() made may be; the text itself for another."""
+    if not (shown.startswith("<") and shown.endswith(">") and _BETWEEN in shown):
+        return [shown]
+    found, depth = [""], 0
+    for character in shown[1:-1]:
+        depth += (character == "<") - (character == ">")
+        if depth < 0:  # Two parts that are not known, and not one that holds others.
+            return [shown]
+        found[-1] += character
+        if depth == 0 and found[-1].endswith(_BETWEEN):
+            found[-1] = found[-1].removesuffix(_BETWEEN)
+            found.append("")
+    return found
+
+
 def join_texts(texts: Sequence[LaunchText], between: str = "") -> LaunchText:
     """Texts one after the other as one."""
     value = None if any(t.value is None for t in texts) else between.join(t.value or "" for t in texts)

@@ -68,13 +68,16 @@ class OwnInterfaces:
             return ""
         if type_.count(".") > 2 and last in _WRAPPERS.get(type_.rpartition(".")[2], ()):
             return ""
+        # What a field has by default is an attribute of the class. Source: the template of rosidl_generator_py.
+        names = {f"{one.name.upper()}__DEFAULT": one.name for one in section.fields}
+        last = names.get(last, last)
         return "" if any(one.name == last for one in (*section.fields, *section.constants)) else type_
 
 
 def may_generate(package: Package, kind: str, ros: int) -> bool:
     """Whether a package without interfaces, as far as was read, may have some, or a module that is called as their kind
     is."""
-    if package.build.unresolved or package.build.generated or kind in package.linked.modules:
+    if package.build.unresolved or package.build.starts or package.build.generated or kind in package.linked.modules:
         return True
     # A release of it that has some may be installed beside.
     return load_fields().find_history(package.name, ros) is not None
@@ -86,6 +89,8 @@ def may_have_interface(package: Package, name: str) -> bool:
     listed = [path for made in package.build.generated for path in made.files]
     if not name[:1].isupper() or package.build.unresolved or not listed or "idl" in kinds.values():
         return True
+    if package.build.starts:
+        return True  # what configuring runs may write interfaces
     if any("$" in path or posixpath.basename(path).partition(".")[0] not in kinds for path in listed):
         return True
     return name in package.linked.modules or any(name.startswith(one) for one in kinds)

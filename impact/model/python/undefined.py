@@ -138,7 +138,7 @@ def list_siblings(
     started = modules.list_started(setup)
     for path in sorted((started | imported) - modules.list_loaded_beside("sys.path")):
         for item in files[path].imports:
-            if not item.level and modules.is_beside(path, item.module.partition(".")[0]):
+            if not (item.level or item.started) and modules.is_beside(path, item.module.partition(".")[0]):
                 yield path, msgspec.structs.replace(item, names=(BESIDE,), lazy=item.lazy or path not in started)
 
 
@@ -239,7 +239,7 @@ class PackageModules:
 
     def __init__(self, files: Mapping[str, PythonFile], others: Collection[str], paths: Iterable[str]):
         self._files, self._others, self._paths = files, others, paths
-        there = frozenset(paths)
+        there = self._there = frozenset(paths)
         self._folders = {posixpath.dirname(path) for path in files}
         self._by_name = group_pairs((posixpath.basename(_strip_ending(path)), path) for path in files)
         # Folders with an __init__.py that lie in none such, or in `src`, by their names.
@@ -313,6 +313,8 @@ class PackageModules:
         if not meant or not _GENERATED.isdisjoint(rest) or any(self.may_be_built(part) for part in rest):
             return False
         there = {_strip_ending(path) for path in self._by_name.get(rest[-1], ())}
+        # Some files are there that nobody could read.
+        there.update(root for root in meant if not {f"{root}.py", f"{root}/__init__.py"}.isdisjoint(self._there))
         return meant.isdisjoint(there) and not any(f"{f}/".startswith(f"{m}/") for m in meant for f in self._folders)
 
     def list_around(self, path: str) -> frozenset[str]:

@@ -84,6 +84,6 @@ def _explain_not_catkin(view: TargetView, name: str) -> tuple[str, bool]:
         plain = (known or view.target.find_similar_build_type(name)) == "cmake"
         sure = bool(known) or view.target.list_build_types(name) == {"cmake"}
         return ("cmake", sure) if plain else ("", False)
-    if view.target.resolve(name) is not None and not view.underlaid:
+    if view.target.resolve(name) is not None and not view.underlaid and not view.is_program(name):
         return "system", not view.means_package(name)
     return "", False

@@ -8,6 +8,7 @@ from ....edges.memory import cache_in_derived
 from ...model.cmake.build import Install
 from ...model.cmake.installed import lets_in, list_copied_files
 from ..vocabulary import At, Package, TargetView
+from .data_files import read_data_files
 
 LAUNCH_FILE = re.compile(r"[._]launch\.(?:py|xml|ya?ml)\Z")
 """Launch files of ROS 2, which `ros2 launch` finds in the share folder alone."""
@@ -51,7 +52,14 @@ def is_installed(installs: Iterable[Install], path: str) -> bool:
 
 def may_stay_behind(view: TargetView, package: Package, path: str) -> bool:
     """Whether a Python file counts as installed only since install rules take what is not known: a variable that
-    nothing sets may name it, or not. What a launch file or script starts is there."""
+    nothing sets may name it, or not, and so may data_files that only running setup.py tells. What a launch file or
+    script starts is there."""
+    if package.build_type == "ament_python":
+        folder, inside = posixpath.dirname(path), package.strip_path(path)
+        if "/" not in inside or inside.startswith((f"{package.name}/", "launch/")) or read_data_files(package):
+            return False
+        module = f"{folder}/__init__.py" in package.files or path.endswith("launch.py")
+        return not module and posixpath.basename(path) not in list_references(view, package, "executable")
     installs = [rule for rule in package.build.installs if view.applies(rule.conditions)]
     known = [rule for rule in installs if not any("$" in item for item in rule.items)]
     inside = package.strip_path(path)

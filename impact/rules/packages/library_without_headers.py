@@ -46,6 +46,8 @@ def library_without_headers(view: TargetView, package: Package):
         for name in declared
         if name.startswith("lib") and (debian := view.list_debs(name)) and not any(d.endswith("-dev") for d in debian)
     }
+    for name in view.unknown_contents.list_opaque(package) if bare else ():
+        bare.pop(name, None)  # a collection of which nobody knows what it brings
     seen = set()
     for need in view.sort_needs(package) if bare else ():
         if need.how == "include" and need.public and need.certain:

@@ -11,8 +11,8 @@ Why it breaks
 Severity
     error where a target is linked or given under a name that only the missing find_package defines, and for includes of
     compiled code where the package has an include folder of its own; warning for other includes, since an include path
-    may come along by accident, and for those of tests; note for libraries, for headers of messages in ROS 1, and in
-    files that the package itself does not compile.
+    may come along by accident, or a function of another package may find it, and for those of tests; note for
+    libraries, for headers of messages in ROS 1, and in files that the package itself does not compile.
 
 Example
     ament_target_dependencies(node angles)      # and no find_package(angles REQUIRED)
@@ -137,6 +137,8 @@ def missing_find_package(view: TargetView, package: Package):
         own_folder = view.target.ros == 2 or not installed
         counts = ros and not header_only and (own_folder or name in view.collect_declared(package))
         doubts = (find_include_doubt(view, need) if counts else Doubt.DISPENSABLE, not tested or Doubt.TEST)
+        if calls_unmodelled(build, tested):
+            doubts = (*doubts, Doubt.INCOMPLETE)  # a function of another package may find it
         folder = "" if ros or not shipped.intersection(need.targets) else load_libraries().find_folder(need.subject)
         if folder and not any(folder in item or "$" in item for item in list_given_items(package, need.targets)):
             doubts = (Doubt.INCOMPLETE,)

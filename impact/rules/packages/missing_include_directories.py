@@ -21,6 +21,9 @@ Not reported
     system package has too.
 """
 
+import re
+
+from ...targets.platform import strip_to_letters
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 
@@ -48,7 +51,7 @@ def missing_include_directories(view: TargetView, package: Package):
         if target.kind not in ("executable", "library") or not view.is_sure(target.conditions):
             continue
         own = (i for i in package.linked.includes if target.name in i.targets and view.is_sure(i.conditions))
-        include = next((i for i in own if _is_released(view, i.path)), None)
+        include = next((i for i in own if _is_released(view, i.path) and not _is_given(package, i.path, given)), None)
         if include is not None:
             data = {"target": target.name, "header": include.path}
             doubts = (Doubt.LUCKY,) if view.target.distro in _WITH_CPATH else ()
@@ -63,5 +66,15 @@ def _is_released(view: TargetView, path: str) -> bool:
     return bool(providers) and all(p.kind == "ros" and p.name not in view.workspace.packages for p in providers)
 
 
+def _is_given(package: Package, path: str, given: str) -> bool:
+    """Whether a header may lie in a folder that a package gives which is found on its own, and called as the header's
+    folder is: `${Sophus_INCLUDE_DIRS}` for `sophus/se3.h`."""
+    head = strip_to_letters(path.partition("/")[0])
+    alone = {strip_to_letters(n) for f in package.build.found if f.how != "catkin" for n in (f.name, f.prefix) if n}
+    variables = (strip_to_letters(name) for name in _FOLDERS.findall(given))
+    return any(name in alone and (head.startswith(name) or name.startswith(head)) for name in variables)
+
+
+_FOLDERS = re.compile(r"\$\{(\w+?)_INCLUDE_?(?:DIRS?|PATH)\}", re.IGNORECASE)
 # Distros whose setup files put the include folder of ROS into CPATH. Source: catkin's change log, 0.7.0.
 _WITH_CPATH = ("groovy", "hydro", "indigo", "jade")

@@ -22,7 +22,8 @@ Use instead
     ament_export_libraries(arm_controller)
 
 Not reported
-    Libraries of the system; names that are not known; packages whose CMake code cannot be read in full.
+    Libraries of the system and of other packages; names that are not known; packages whose CMake code cannot be read in
+    full.
 """
 
 import posixpath
@@ -30,6 +31,7 @@ import re
 from collections.abc import Iterator
 
 from ...model.misspelling import SpellingIndex
+from ...targets.machine.sonames import load_sonames
 from ...targets.providers.library import sets_variables
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .ament_exports import read_ament_exports
@@ -92,10 +94,10 @@ def _list_of_catkin(view: TargetView, package: Package):
         elif export.how == "libraries" and not package.build.unresolved:
             asked = item != package.name  # some export their own name by habit, and nobody asks for it
             outside = re.search(r"/|^-|\.(?:so|a)\Z", item) or (asked and view.find_cmake(item))
+            outside = outside or (asked and _is_elsewhere(view, item))
             if not outside and made.isdisjoint((f"lib{item}.so", f"lib{item}.a")):  # of which no target is known
-                # CMake finds libraries of the system by their names.
-                of_system = item.startswith("boost_") or any(map(view.providers.find_pkgconfig, (item, f"lib{item}")))
-                own = asked and not of_system and all(link.item != item for link in package.build.target_links)
+                own = asked and all(link.item != item for link in package.build.target_links)
+                own = own and not view.unknown_contents.may_hold(package, item)
                 doubts = ((own and view.is_sure(export.conditions)) or Doubt.AMBIGUOUS,)
                 yield Diagnostic(export.at, item, package.name, kind="no target", doubts=doubts)
         elif export.how == "system_depends" and item not in found and not any(sets_variables(f, item) for f in names):
@@ -103,6 +105,17 @@ def _list_of_catkin(view: TargetView, package: Package):
             data = {"replacement": "EIGEN3" if near == "Eigen3" else near}
             kind, doubt = ("system, other name", Doubt.DISTURBS) if near else ("system", Doubt.DISPENSABLE)
             yield Diagnostic(export.at, item, package.name, data, kind, (doubt,))
+
+
+def _is_elsewhere(view: TargetView, library: str) -> bool:
+    """Whether the system or another package has a library of a name: CMake looks in all their folders for what
+    catkin_package() is given."""
+    if library.startswith("boost_") or any(map(view.providers.find_pkgconfig, (library, f"lib{library}"))):
+        return True
+    others = (target for other in view.workspace.packages.values() for target in other.build.targets)
+    if any(target.kind == "library" and library in (target.name, target.output_name) for target in others):
+        return True
+    return load_sonames().has_stem(library) or bool(view.offers.list_library_owners(library))
 
 
 def _list_of_ament(view: TargetView, package: Package, exports) -> Iterator[Diagnostic]:

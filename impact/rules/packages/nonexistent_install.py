@@ -8,8 +8,9 @@ Why it breaks
     `make install` stops: "file INSTALL cannot find".
 
 Severity
-    error; warning for folders of Python packages, for folders of headers, which may be there and empty, and for folders
-    of which only matching files are installed, since CMake goes on without them.
+    error; warning for folders of Python packages, for folders of headers, which may be there and empty, for folders of
+    which only matching files are installed, since CMake goes on without them, and where something is run while the
+    package is configured or built, which may write them.
 
 Example
     install(DIRECTORY launch config DESTINATION share/${PROJECT_NAME})     # there is no folder `config`
@@ -25,6 +26,7 @@ Not reported
 import posixpath
 import re
 
+from ...model.absent_headers import may_be_made
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .absent_paths import is_absent
 from .install_rules import list_copying_rules
@@ -77,7 +79,8 @@ def nonexistent_install(view: TargetView, package: Package):
                 continue
             if is_absent(view, package, path):
                 subject = package.strip_path(path)
-                yield Diagnostic(install.at, subject, package.name, kind=kind, doubts=(*doubts, *besides))
+                made = not may_be_made(package, posixpath.basename(path)) or Doubt.INCOMPLETE
+                yield Diagnostic(install.at, subject, package.name, kind=kind, doubts=(*doubts, *besides, made))
 
 
 def _may_be_empty(package: Package, path: str) -> str:

@@ -14,9 +14,9 @@ Why it breaks
     package. A launch file stops when it opens the file.
 
 Severity
-    error for files that a build reads; warning for tests, under a condition, where the build downloads something, for
-    paths that exist only in some places, and for files that launch files open; note for files outside of a package that
-    was never released.
+    error for files that a build reads; warning for tests, under a condition, where the build downloads something or
+    what is run while configuring may write files, for paths that exist only in some places, and for files that launch
+    files open; note for files outside of a package that was never released.
 
 Example
     add_executable(sled_node src/sled_nod.cpp)
@@ -35,6 +35,7 @@ from collections.abc import Iterator
 
 from ...model.absent_headers import may_be_made
 from ...model.cmake.build import WrittenPath, is_for_tests
+from ...model.cmake.interpreter import calls_unmodelled
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .absent_paths import is_absent
 from .data_files import list_copied
@@ -84,7 +85,8 @@ def nonexistent_path(view: TargetView, package: Package) -> Iterator[Diagnostic]
             certain or Doubt.CONDITIONAL,
             kind != "outside" or view.target.was_ever_released(package.name) or Doubt.DISPENSABLE,
             not tests or (view.is_built("test") and view.roles.farm_makes_tests) or Doubt.TEST,
-            not package.build.builds_others or Doubt.INCOMPLETE,
+            not (package.build.builds_others or package.build.starts or calls_unmodelled(package.build))
+            or Doubt.INCOMPLETE,
         )
         yield Diagnostic(use.at, subject, package.name, {"by": use.by}, kind, doubts)
 

@@ -8,7 +8,8 @@ Why it breaks
 
 Severity
     error; warning for components that are not required, where an underlay may have a package of that name, and where
-    code includes headers below a folder called so, of which none is known.
+    code includes headers below a folder called so, of which none is known; note for keys that install programs alone,
+    since a package of that name may be meant.
 
 Example
     find_package(catkin REQUIRED COMPONENTS roscpp bullet)
@@ -50,4 +51,6 @@ def system_library_component(view: TargetView, package: Package):
             continue
         unsure = view.underlaid or view.means_package(name)
         doubts = (found.required or Doubt.OPTIONAL, not unsure or Doubt.INCOMPLETE)
+        if view.is_program(name):  # most likely a package from source has its name
+            doubts = (Doubt.PRIVATE,)
         yield Diagnostic(found.at, name, package.name, {"distro": view.target.distro}, doubts=doubts)

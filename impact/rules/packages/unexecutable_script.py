@@ -36,6 +36,8 @@ _ONE_LINE = (Together("interpreter"),)
 _BY_OTHER_MEANS = (Together("command python", everywhere=True),)
 # Folders for programs, as install rules name them.
 _OF_PROGRAMS = re.compile(r"(^|/)(bin|lib)(/|$)|_BIN_DESTINATION")
+# Folders for modules: `lib/python3/dist-packages/winch`, ${PYTHON_INSTALL_DIR}.
+_OF_MODULES = re.compile(r"-packages(/|$)|_?PYTHON_(INSTALL_DIR|DESTINATION)|(^|/)lib/python[\d.]*/")
 # Scripts that other programs run, as data.
 _RUN_BY = (".launch.py", "setup.py", "conftest.py")
 # The minor version of Python 3 since which the systems of targets have no command `python`.
@@ -76,6 +78,8 @@ def _list_not_executable(view: TargetView, package: Package, installs) -> Iterat
     modules = set(package.linked.imported_beside) - nodes
     started_by_name = list_references(view, package, "executable") if modules else {}
     for install in installs:
+        if _OF_MODULES.search(install.destination):
+            continue
         among_programs = _OF_PROGRAMS.search(install.destination)
         if install.kind == "directory" and not install.executable:
             # Elsewhere than among programs lies much that nobody starts.

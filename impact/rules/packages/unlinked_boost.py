@@ -8,9 +8,10 @@ Why it breaks
     The linker reports undefined references, or CMake stops at a target that is not defined.
 
 Severity
-    For a header of a compiled component: error in an executable, warning in a library and where a dependency may bring
-    the component, note in tests and, in ROS 1, in libraries; error for a component that no exported Boost of ROS 1 has.
-    warning when `Boost::x` is linked and not asked for.
+    For a header of a compiled component: error in an executable, warning in a library, where a dependency may bring the
+    component, and where much of it lies in headers alone (filesystem, thread and others), note in tests and, in ROS 1,
+    in libraries; error for a component that no exported Boost of ROS 1 has. warning when `Boost::x` is linked and not
+    asked for.
 
 Example
     find_package(Boost REQUIRED)
@@ -89,15 +90,27 @@ def _list_unlinked(view: TargetView, package: Package, asked: Set[str]) -> Itera
             asked_for = component in asked
             data = {"target": name, "header": include.path, "component": component}
             kind = "boost, asked for" if asked_for else "boost"
-            doubts = () if lacking else _list_doubts(view, include, targets[name], known)
+            doubts = () if lacking else _list_doubts(view, include, targets[name], known, component)
             at = targets[name].at if asked_for else include.at
             yield Diagnostic(at, f"Boost::{component}", package.name, data, kind, doubts)
             break
 
 
-def _list_doubts(view: TargetView, include, target, known: LinkedBoost) -> tuple[Doubt, ...]:
-    sure = not known.more and target.kind == "executable"
+def _list_doubts(
+    view: TargetView, include, target, known: LinkedBoost, component: str
+) -> tuple[Doubt, ...]:
+    sure = not known.more and target.kind == "executable" and component not in _PARTLY_COMPILED
     # Who links a catkin library has Boost from roscpp.
     if include.role != "build" or (view.target.ros == 1 and not sure):
         return (Doubt.DISPENSABLE,)
     return () if sure else (Doubt.INCOMPLETE,)
+
+
+# Components of which much lies in headers alone, such as `boost::shared_mutex`, and all of some since a version: who
+# includes them need not use what is compiled.
+_PARTLY_COMPILED = frozenset(
+    [
+        *("atomic", "chrono", "container", "context", "coroutine", "date_time", "exception", "filesystem", "graph"),
+        *("math", "random", "regex", "system", "thread"),
+    ]
+)

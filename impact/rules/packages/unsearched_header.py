@@ -8,8 +8,8 @@ Why it breaks
     The compiler stops: "No such file or directory".
 
 Severity
-    error; warning in tests, and where it is not known which folders targets search, or what a command that is called
-    does.
+    error; warning in tests, and where it is not known which folders targets search, as where find_path() looks one up,
+    or what a command that is called does.
 
 Example
     #include "lift.h"                           // which is include/winch/lift.h, and include_directories(include)
@@ -19,7 +19,8 @@ Use instead
 
 Not reported
     Headers of the same path that something else has, or that may be made; includes under conditions that may not hold;
-    packages of which it is not known what their CMake code does, and those that may have folders which were not read.
+    packages of which it is not known what their CMake code does, or that search folders which a find module of their
+    own looks up, and those that may have folders which were not read.
 """
 
 import re
@@ -45,14 +46,22 @@ def unsearched_header(view: TargetView, package: Package):
     called = calls_unmodelled(build)
     if called and view.unknown_contents.list_unknown_found(package):
         return  # a command of which nothing is known may make headers, and search folders
-    searched = [path for path in build.list_paths() if path.how == "include"]
-    known = not called and not any("$" in one.path and not _OF_PACKAGE.fullmatch(one.path) for one in searched)
+    searched = [path.path for path in build.list_paths() if path.how == "include"]
+    looked_up = [found for found in build.found if found.how == "find_path" and f"${{{found.prefix}}}" in searched]
+    variables = [one for one in searched if "$" in one]
+    if any(map(_OF_PACKAGE.fullmatch, variables)) and _answers_itself(package):
+        return  # what its own find module looks up may be any folder, those of the package too
+    known = not (called or looked_up) and all(map(_OF_PACKAGE.fullmatch, variables))
     for include, header in package.linked.unsearched:
         path, place = include.path, (include.at.path, include.path)
         if place in seen or not view.is_sure(include.conditions) or is_made(package, path.rpartition("/")[2]):
             continue
+        if any(path in (found.name, *found.optional_components) for found in looked_up):
+            continue  # CMake searches the folder in which it found this very header
         if view.workspace.provides_header(path) != [package.name] or _has_another(view, package, path):
             continue
+        if view.workspace.generates_header(package, path):
+            continue  # a copy of what the build makes
         if view.workspace.unread and _may_be_unread(view, package, path):
             continue
         seen.add(place)
@@ -60,6 +69,13 @@ def unsearched_header(view: TargetView, package: Package):
         data = {"header": package.strip_path(header), "replacement": inside[2] if inside[1] else ""}
         doubts = (*list_place_doubts(view, include.role), known or Doubt.INCOMPLETE)
         yield Diagnostic(include.at, path, package.name, data, doubts=doubts)
+
+
+def _answers_itself(package: Package) -> bool:
+    """Whether a find module or a configuration of the package itself answers what it finds."""
+    files = {path.rpartition("/")[2].lower() for path in package.linked.files if path.endswith(".cmake")}
+    names = {found.name.lower() for found in package.build.found if found.how == "find_package"}
+    return any(not files.isdisjoint((f"find{n}.cmake", f"{n}config.cmake", f"{n}-config.cmake")) for n in names)
 
 
 def _may_be_unread(view: TargetView, package: Package, path: str) -> bool:
@@ -73,6 +89,9 @@ def _may_be_unread(view: TargetView, package: Package, path: str) -> bool:
 
 def _has_another(view: TargetView, package: Package, path: str) -> bool:
     """Whether something else that a package is built with may have a header of the same path."""
+    head = path.partition("/")[0]
+    if head not in (path, package.name) and view.is_package(head):
+        return True  # the header is called after that package, whatever lies in a folder of this name
     others = [one for one in view.providers.find_header(path) if one.name != package.name]
     around = view.build_environment(package)
     return any(one.kind != "ros" or one.name in around for one in others)

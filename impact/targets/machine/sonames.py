@@ -74,6 +74,10 @@ class Sonames:
             return None
         return bool(self._bits.get(soname, 0) & bit)
 
+    def has_stem(self, library: str) -> bool:
+        """Whether some platform has a library that is linked by a name (`z` of libz.so.1), in any version."""
+        return f"lib{library}.so" in self._by_stem
+
     def find_package(self, soname: str) -> str:
         """A Debian package that has the library on the newest platform that has it, empty when none does."""
         return self._packages.get(soname, "")

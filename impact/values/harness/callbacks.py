@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from ....edges.groups import group_pairs
-from ...facts.flow import DataMember, FlowExpr
+from ...facts.flow import DataMember, FlowCall, FlowExpr
 from ...model.fields.topics import extract_uses
-from ...model.flow.code import SOURCES, FlowCode, Fn, get_tail
+from ...model.flow.calls import FrameworkCall
+from ...model.flow.code import SOURCES, FlowCode, Fn, find_argument, get_tail
 from ...model.flow.endpoints import Site
 from ...model.flow.graph import Endpoint, Graph
 from ...model.flow.join import Join
@@ -19,6 +20,23 @@ from ...model.workspace import Package, Workspace
 
 _KINDS = {"subscriber": "subscriber", "server": "service", "action server": "action"}
 _DEEPEST = 4
+_SERVER_ROLES = {
+    "goal": ("goal_callback", -1),
+    "cancel": ("cancel_callback", -1),
+    "accepted": ("handle_accepted_callback", -1),
+}
+_CLIENT_ROLES = {
+    "send_goal_async": {"feedback": ("feedback_callback", 1)},
+    "send_goal": {"done": ("done_cb", 1), "active": ("active_cb", 2), "feedback": ("feedback_cb", 3)},
+    "add_done_callback": {"future": ("callback", 0)},
+}
+"""Methods of clients of actions to the callbacks that these are given: what they are for, name and place of the
+parameter. Sources: rclpy's action/client.py and server.py, actionlib's simple_action_client.py."""
+_FUTURES = {"send_goal_async": "response", "get_result_async": "result"}
+_POINTED = re.compile(
+    r"(?:const\s+)?(?:(?:std|boost)::(?:unique_ptr|shared_ptr|scoped_ptr)\s*<\s*([\w:]+)\s*>|([\w:]+)\s*\*(?:\s*const)?)"
+)
+"""A member that may point to its class's implementation."""
 
 
 class ObservedMember(NamedTuple):
@@ -41,7 +59,8 @@ class CppCallback(NamedTuple):
     function: the callback's own, None where it is not known. message_type: `package/Name`, empty for a timer.
     is_filtered: it comes through a filter of messages; joined: then, or with a camera, the types of all messages that
     the callback is given, and place: the place of this one; registered: path and line of the call that gives the filter
-    its callback, empty where that is not known."""
+    its callback, empty where that is not known. role: of an action's callback in Python: `execute`, `goal`, `cancel`,
+    `accepted`, `feedback`, `response`, `result`, `done`, `active`."""
 
     kind: str
     path: str
@@ -55,6 +74,7 @@ class CppCallback(NamedTuple):
     joined: tuple[str, ...] = ()
     place: int = 0
     registered: tuple[str, int] = ("", 0)
+    role: str = ""
 
     @property
     def name(self) -> str:
@@ -76,6 +96,7 @@ def list_callbacks(workspace: Workspace, graph: Graph, language: str) -> list[Cp
     found: dict[tuple[str, str, int, str], CppCallback] = {}
     rows = (
         *_list_endpoints(join, ends, language),
+        *(_list_actions(join, ends) if language == "python" else ()),
         *_list_timers(join, graph, language),
         *_list_mains(join, graph, language),
     )
@@ -102,7 +123,65 @@ def _list_endpoints(
                 tuple(dict.fromkeys(one.topic for one in of if one.topic)),
                 tuple(dict.fromkeys(one.node for one in of if one.node)),
             )  # fmt: skip
+            if found.kind == "action" and language == "python":
+                found = found._replace(role="execute", message_type=found.message_type.removesuffix("Action"))
             yield _join_messages(found, join, site, [one.type for one in of])
+
+
+def _list_actions(join: Join, ends: dict[tuple[str, str, int], list[Endpoint]]) -> Iterator[CppCallback]:
+    """The callbacks of actions in Python besides the one that executes a goal: those that a server is given by name,
+    and those that are given with a goal, to the client of the class or file."""
+    clients: dict[tuple[str, str], set[str]] = {}
+    for site in join.sites.endpoints:
+        fn = site.use.fn
+        if fn.source.facts.language != "python" or site.implied or "/" not in site.type:
+            continue
+        type_ = site.type.removesuffix("Action")
+        if site.role == "action client":
+            clients.setdefault((fn.source.path, ".".join(fn.owner)), set()).add(type_)
+        elif site.role == "action server":
+            rows = ends.get((site.role, fn.source.path, site.use.call.line), [])
+            topics = tuple(dict.fromkeys(one.topic for one in rows if one.topic))
+            nodes = tuple(dict.fromkeys(one.node for one in rows if one.node))
+            for role, function in _list_given(join, fn, site.use.call, _SERVER_ROLES, use=site.use):
+                yield CppCallback(
+                    "action", fn.source.path, site.use.call.line, fn, function, type_, topics, nodes, role=role
+                )
+    for (path, owner), types in clients.items():
+        if len(types) != 1:
+            continue
+        (type_,) = types
+        for fn in join.code.functions_in.get(path, ()):
+            if ".".join(fn.owner) != owner:
+                continue
+            for call in fn.facts.calls:
+                roles = _CLIENT_ROLES.get(get_tail(call.callee), {})
+                for role, function in _list_given(join, fn, call, roles):
+                    yield CppCallback("action", path, call.line, fn, function, type_, (), (), role=role)
+
+
+def _list_given(
+    join: Join, fn: Fn, call: FlowCall, roles: Mapping[str, tuple[str, int]], use: FrameworkCall | None = None
+) -> Iterator[tuple[str, Fn]]:
+    """The functions that a call is given for its parameters, with what these are for. roles: to the name and place of
+    the parameter."""
+    for role, (name, place) in roles.items():
+        value = find_argument(call.arguments, place, name)
+        meant = _find_asked(fn, call) if role == "future" else role
+        if value is not None and meant:
+            yield from ((meant, function) for function in join.sites.list_bodies(value, fn, use))
+
+
+def _find_asked(fn: Fn, call: FlowCall) -> str:
+    """What a future is of that is given a callback: `response` where it is of a goal that was sent, `result` of its
+    result; empty where that does not show in the function."""
+    holder = call.callee.rpartition(".")[0]
+    for other in fn.facts.calls:
+        if other.target == holder or f"{other.callee}()" == holder:
+            role = _FUTURES.get(get_tail(other.callee))
+            if role:
+                return role
+    return ""
 
 
 def _join_messages(callback: CppCallback, join: Join, site: Site, types: Sequence[str]) -> CppCallback:
@@ -207,6 +286,25 @@ class ClassReader:
                     least = self._find_least(member.name, one) if written else None
                     found[member.name] = _make_member(member, written, read)._replace(least=least)
         return list(found.values())
+
+    def list_parts(self, cls: Cls, callback: Fn | None) -> list[tuple[str, Cls]]:
+        """The data members of a class that point to its implementation, with the class of that: one that is declared in
+        it, one that only the source file knows whose class it is not in, or the one that the callback is of."""
+        own = self.find_class(callback)
+        found: dict[str, Cls] = {}
+        for one in self.code.list_bases(cls):
+            for member in one.facts.members:
+                pointed = _POINTED.fullmatch(member.type.strip())
+                if pointed is None or not member.name.isidentifier():
+                    continue
+                inner = self.code.find_class_of_type(pointed[1] or pointed[2], one.source, one.name)
+                if inner is None or not inner.facts.members or inner.key == cls.key:
+                    continue
+                is_hidden = inner.source.path.endswith(SOURCES) and inner.source.path != one.source.path
+                is_inner = inner.name.startswith(f"{one.name}::")
+                if is_hidden or is_inner or (own is not None and own.key == inner.key):
+                    found.setdefault(member.name, inner)
+        return list(found.items())
 
     def _is_written_by_others(self, name: str, cls: Cls) -> bool:
         """Whether a function of a class that is no constructor writes a member."""

@@ -19,7 +19,7 @@ from ..outcomes import Bounds
 from .cuts import SourceCuts
 from .facade import RUNTIME, find_facade, list_folders
 from .interfaces import KnownInterfaces, write_headers
-from .precompiled import Facade, find_includes, split_dependencies
+from .precompiled import Facade, find_includes, find_plain_includes, split_dependencies
 from .sources import SourceUnit, is_optional_line
 from .stubs import CompileError, StubTable, parse_errors
 from .toolchain import (
@@ -31,6 +31,7 @@ from .toolchain import (
     CompilerTime,
     find_clang,
     find_fuzzer,
+    find_header_folders,
     find_native_compiler,
 )
 
@@ -97,6 +98,10 @@ class Workshop:
         self._wanted: dict[tuple[str, bool], bool] = {}
         self._cuts: SourceCuts | None = None
         self.time = CompilerTime(bounds.compiling)
+        # What units added to classes of the facades; later ones begin with it, and with a facade that has it.
+        self._extras: dict[str, dict[str, str]] = {}
+        # What was learnt of a header, for the next units that include it.
+        self._lessons: dict[str, dict[CompileError, None]] = {}
         # What could not be built, with the reason.
         self._failed: dict[Path, str] = {}
 
@@ -180,32 +185,44 @@ class Workshop:
                 at.parent.mkdir(parents=True, exist_ok=True)
                 write_scratch_file(at, text.encode())
 
-    def _make_headers(self, unit: SourceUnit, path: Path) -> None:
-        """Makes the headers of messages and facades that a unit and the workspace's headers include, as far as their
-        text tells."""
+    def _make_headers(self, unit: SourceUnit, path: Path) -> list[Path]:
+        """Makes the headers that a unit and the workspace's headers include and that are not there, as far as their
+        text tells: of messages and facades in any case, of others where no condition is around them. Gives the files
+        that it read."""
         facades = list_folders(self.definitions.ros)
-        waiting, seen = [path], {path}
+        waiting, seen = [path], {path: None}
         while waiting:
             at = waiting.pop()
             text = "\n".join(self._read_lines(str(at)))
+            plain = find_plain_includes(text)
             for header in find_includes(text):
                 folders = (at.parent, *facades, *map(Path, (*unit.folders, *self._folders)))
                 found = next((each / header for each in folders if (each / header).is_file()), None)
                 if found is None:
-                    if header.startswith("/") or not self._is_ours(header, unit):
+                    if header.startswith("/"):
+                        continue
+                    if not self._is_ours(header, unit) and (header not in plain or self._is_on_machine(header, unit)):
                         continue
                     self._make_header(header, unit)
-                    found = next((at for at in (self.boost / header, self.include / header) if at.is_file()), None)
+                    folders = (self.boost, self.include, *map(Path, self._folders))
+                    found = next((each / header for each in folders if (each / header).is_file()), None)
                     if found is None:
                         continue
                 if found not in seen:
-                    seen.add(found)
+                    seen[found] = None
                     waiting.append(found)
+        return list(seen)
 
     def _is_ours(self, header: str, unit: SourceUnit) -> bool:
         """Whether a header is one of a message, or a facade stands for it."""
         own = find_facade(header, self.definitions.ros, unit.boost)
         return bool(own or self.definitions.find_key_of_header(header))
+
+    def _is_on_machine(self, header: str, unit: SourceUnit) -> bool:
+        """Whether a compiler finds a header on the machine that none of ours stands for."""
+        folders = (Path(each) for each in (*find_header_folders(find_clang()), *self._system))
+        at = next((each / header for each in folders if (each / header).is_file()), None)
+        return at is not None and not self._is_wanted(str(at), unit)
 
     def _has_wanted(self, unit: SourceUnit) -> bool:
         """Whether a unit was compiled with a header of the machine that ours stand for."""
@@ -313,23 +330,38 @@ class Workshop:
         path = folder / "harness.cpp"
         if unit.is_c:
             return self._prepare_plain(unit, clang, path)
-        unit.stubs = StubTable(self._read_line, self._is_own, self._list_bases)
+        unit.stubs = StubTable(self._read_line, self._is_own, self._list_bases, self._extras)
         unit.cuts = SourceCuts(self.root, folder)
         self._cuts = unit.cuts
+        try:
+            self._compile(unit, clang, path, write)
+        finally:
+            self._extras = unit.stubs.extras
+            for each in unit.stubs.lessons:
+                self._lessons.setdefault(each.path, {}).setdefault(each)
+        return path
+
+    def _compile(
+        self, unit: SourceUnit, clang: str, path: Path, write: Callable[[Collection[str]], SourceUnit] | None
+    ) -> None:
+        """The rounds of prepare()."""
+        assert unit.stubs is not None and unit.cuts is not None
         self._store(unit, path)
-        self._make_headers(unit, path)
+        read = self._make_headers(unit, path)
+        unit.stubs.learn_again(each for one in read for each in self._lessons.get(str(one), ()))
+        self._store(unit, path)
         first: CompileError | None = None
         is_searched = False
         for _ in range(_ROUNDS_OF_STUBS):
             run = self._check(unit, clang, path)
-            if not is_searched and (run.status != 0 or self._has_wanted(unit)):
+            if run.status == 0 and (is_searched or not self._has_wanted(unit)):
+                return
+            errors = parse_errors(run.errors)
+            if not is_searched and (run.status == 0 or any(self._is_wanted(each.path, unit) for each in errors)):
                 # Only now the preprocessor is asked, which follows what is included into headers of the machine.
                 is_searched = True
                 self._find_headers(unit, clang, path)
                 continue
-            if run.status == 0:
-                return path
-            errors = parse_errors(run.errors)
             if not errors:
                 raise CannotCompile(run.errors.strip().split("\n")[0] or "the compiler failed")
             missing = [each for each in errors if each.text.endswith("file not found")]
@@ -414,10 +446,14 @@ class Workshop:
 
     def _find_precompiled(self, unit: SourceUnit, clang: str) -> Path | None:
         """The facade, compiled once for all units of a standard, whatever further macros these define, none of which it
-        asks for; None for those that change it."""
-        if unit.stubs is None or unit.stubs.has_hooks or not unit.boost:
+        asks for; with the members that were added to its classes, once for all units that have the same ones."""
+        if unit.stubs is None or not unit.boost:
             return None
-        return self._facade.find_precompiled(clang, [*self._list_macros(unit), *_IR_FLAGS])
+        flags = [*self._list_macros(unit), *_IR_FLAGS]
+        extras = unit.stubs.render_extras()
+        if not extras:
+            return self._facade.find_precompiled(clang, flags)
+        return self._facade.find_extended(clang, flags, extras, self.folder / "facades", self._run)
 
     def _describe(self, error: CompileError) -> str:
         path = Path(error.path)

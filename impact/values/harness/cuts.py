@@ -31,6 +31,16 @@ _MASKED = re.compile(
 _INITIALISERS = re.compile(r"\)\s*(?:noexcept\s*(?:\([^()]*\))?\s*)?:(?!:)")
 _BEFORE_BLOCK = re.compile(r"(?:[){};:\]]|\b(?:else|do|try|mutable|noexcept|const|override)|->\s*[\w:<>,&*\s]+)$")
 
+_DECLARATION = re.compile(
+    r"(?:(?:const|static|constexpr)\s+)*(?P<type>[A-Za-z_][\w:]*(?:\s*<[^;{}()]*>)?(?:::\w+)*)"
+    r"(?:\s*[&*]+\s*|\s+)(?:const\s+)?(?P<name>[A-Za-z_]\w*)\s*(?:=(?!=)|\(|\{|;|\[)"
+)
+_NO_TYPES = frozenset(
+    ("return", "delete", "throw", "else", "using", "typedef", "case", "goto", "new", "if", "for", "while", "do",
+     "switch", "try", "template", "struct", "class", "enum", "union", "namespace", "typename", "co_return", "co_await")
+)  # fmt: skip
+"""Words that what is no declaration may begin with."""
+
 
 class _Brace(NamedTuple):
     """A pair of braces. kind: `outer` (namespaces, classes), `function`, `block`, `other`; head: where what it belongs
@@ -90,6 +100,9 @@ class SourceFile:
         already. Gives whether there was one."""
         if not 0 < line <= len(self._lines):
             return False
+        whole = self.rendered[self._lines[line - 1] :].partition("\n")[0]
+        if whole.lstrip().startswith("#"):
+            return False  # what is around it has nothing to do with it
         at = min(self._lines[line - 1] + column - 1, len(self.rendered))
         at = min(self._origins[at], len(self.text) - 1)
         for part in self._list_parts(at, shown):
@@ -126,7 +139,8 @@ class SourceFile:
                 if start <= at < end:
                     statement = self.masked[start:end]
                     gives = re.search(r"\breturn\s*[^;\s]", statement) is not None
-                    yield _Cut(start, end, f"::ri::cut{'_end' if gives else ''}({quoted});")
+                    declared = "".join(f" ::ri::Anything {name};" for name in _list_declared(statement))
+                    yield _Cut(start, end, f"::ri::cut{'_end' if gives else ''}({quoted});{declared}")
             if brace.kind == "function":
                 yield self._cut_body(brace, quoted)
                 head = self.masked[brace.head : brace.start]
@@ -209,6 +223,15 @@ class SourceFile:
         number = bisect.bisect_left(self.braces, (start,))
         found = self.braces[number] if number < len(self.braces) else None
         return found if found is not None and found.start == start else None
+
+
+def _list_declared(statement: str) -> list[str]:
+    """The variables that a statement of a block declares, which what comes after it may use."""
+    bound = re.match(r"(?:const\s+)?auto\s*[&\s]*\[([\w\s,]+)\]\s*=", statement)
+    if bound is not None:
+        return [each.strip() for each in bound[1].split(",")]
+    found = _DECLARATION.match(statement)
+    return [found["name"]] if found is not None and found["type"].split()[0] not in _NO_TYPES else []
 
 
 def _skip_labels(masked: str, start: int, end: int) -> tuple[int, int]:

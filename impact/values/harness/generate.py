@@ -272,6 +272,12 @@ class HarnessWriter:
             lines.append(f"  auto *node = static_cast<{own} *>(self); (void)node;")
             cls = self._find_built(callback)
             members = self.reader.list_members(cls, callback.function) if cls is not None else []
+            # What members point to comes first: it is part of what is watched of them.
+            for name, inner in self.reader.list_parts(cls, callback.function) if cls is not None else ():
+                state = _write_state(
+                    self.reader.list_members(inner, callback.function), f"node->{name}->", f"this.{name}.", every=False
+                )
+                lines += [f"  if (node->{name}) {{", *state, "  }"]
             lines += _write_state(members, "node->", "this.", every=False)
         elif (cls := self.reader.find_class(callback.function)) is not None and any(
             one.is_read for one in self.reader.list_members(cls, callback.function)

@@ -12,19 +12,22 @@ import hashlib
 import os
 import re
 import shutil
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from ....edges.files import read_file, read_text, write_file
 from ...cache import cache_folder
 from .facade import RUNTIME, find_facade, list_folders
 from .interfaces import KnownInterfaces, write_headers
-from .toolchain import describe_version, run_compiler
+from .toolchain import CompilerRun, describe_version, run_compiler
 
 _MOST = 6
 """Facades that are kept; each needs about 16 MB."""
+_MOST_EXTENDED = 2
 _LARGEST = 200_000_000
 _INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"\n]+)[>"]', re.MULTILINE)
+
+_DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*([a-z_]+)\b([^\n]*)", re.MULTILINE)
 
 
 class Facade:
@@ -36,6 +39,8 @@ class Facade:
         self.name = "rclcpp/rclcpp.hpp" if self.ros == 2 else "ros/ros.h"
         self.headers, self._digest = _collect_headers(definitions, self.name)
         self._known: dict[tuple[str, ...], Path | None] = {}
+        self._extended: dict[tuple[str, ...], Path] = {}
+        self._refused: set[tuple[str, ...]] = set()
 
     def find_precompiled(self, clang: str, flags: Sequence[str]) -> Path | None:
         """The precompiled header for a compiler and its flags (without folders of headers), made where it is not there
@@ -49,6 +54,8 @@ class Facade:
     def forget(self, made: Path) -> None:
         """Removes a precompiled header that the compiler refuses."""
         self._known = {key: None if path == made else path for key, path in self._known.items()}
+        self._refused |= {key for key, path in self._extended.items() if path == made}
+        self._extended = {key: path for key, path in self._extended.items() if path != made}
         shutil.rmtree(made.parent, ignore_errors=True)
 
     def _find(self, clang: str, flags: Sequence[str]) -> Path | None:
@@ -59,19 +66,12 @@ class Facade:
             with contextlib.suppress(OSError):
                 os.utime(folder)
             return made
-        for path, text in self.headers.items():
-            _write_once(folder / "include" / path, text)
-        header = folder / "facade.hpp"
-        _write_once(header, f'#pragma once\n#include "ri_core.hpp"\n#include <{self.name}>\n')
-        folders = [f"-I{each}" for each in (folder / "include", *list_folders(self.ros))]
         # Made beside it, so that whoever reads one meanwhile reads a whole one. Units are in other folders at other
         # times; what counts is that headers are of the same text.
         new = folder / f"new{os.getpid()}.pch"
         rule = folder / f"new{os.getpid()}.d"
-        command = [
-            clang, "-x", "c++-header", *flags, *folders, "-Xclang", "-fno-pch-timestamp",
-            "-fpch-instantiate-templates", "-MD", "-MF", str(rule), str(header), "-o", str(new),
-        ]  # fmt: skip
+        more = ("-fpch-instantiate-templates", "-MD", "-MF", str(rule))
+        command = [*self._write_sources(clang, flags, folder, ()), *more, "-o", str(new)]
         try:
             if run_compiler(command, folder).status != 0:
                 return None
@@ -83,6 +83,40 @@ class Facade:
                 each.unlink(missing_ok=True)
         _remove_old(folder.parent)
         return made
+
+    def find_extended(
+        self, clang: str, flags: Sequence[str], extras: Sequence[str], folder: Path, run: Callable[..., CompilerRun]
+    ) -> Path | None:
+        """The same with members that are added to its classes. extras: the macros that do it; folder: where it is made,
+        for one run of ours; run: runs a compiler. The two that were asked for last are kept."""
+        key = (clang, *flags, *extras)
+        known = self._extended.pop(key, None)
+        if known is not None or key in self._refused:
+            self._extended.update({key: known} if known is not None else {})
+            return known
+        name = hashlib.sha256("\n".join(key).encode()).hexdigest()[:20]
+        own, made = folder / name, folder / name / "facade.pch"
+        is_made = False
+        with contextlib.suppress(OSError):
+            command = self._write_sources(clang, flags, own, extras)
+            is_made = run([*command, "-o", str(made)], own).status == 0
+        if not is_made:
+            self._refused.add(key)
+            return None
+        while len(self._extended) >= _MOST_EXTENDED:
+            shutil.rmtree(self._extended.pop(next(iter(self._extended))).parent, ignore_errors=True)
+        self._extended[key] = made
+        return made
+
+    def _write_sources(self, clang: str, flags: Sequence[str], folder: Path, extras: Sequence[str]) -> list[str]:
+        """Writes what a facade is made of. Gives the command that compiles it, but for where to."""
+        for path, text in self.headers.items():
+            _write_once(folder / "include" / path, text)
+        header = folder / "facade.hpp"
+        lines = ["#pragma once", *extras, '#include "ri_core.hpp"', f"#include <{self.name}>", ""]
+        _write_once(header, "\n".join(lines))
+        folders = [f"-I{each}" for each in (folder / "include", *list_folders(self.ros))]
+        return [clang, "-x", "c++-header", *flags, *folders, "-Xclang", "-fno-pch-timestamp", str(header)]
 
 
 def _collect_headers(definitions: KnownInterfaces, name: str) -> tuple[dict[str, str], str]:
@@ -159,6 +193,25 @@ def _remove_old(folder: Path) -> None:
 def find_includes(text: str) -> list[str]:
     """The headers that a text includes, whatever the conditions."""
     return _INCLUDE.findall(text)
+
+
+def find_plain_includes(text: str) -> set[str]:
+    """The headers that a text includes without a condition, but for the one that keeps it from being read twice."""
+    found: set[str] = set()
+    conditions: list[bool] = []
+    rows = [(each[1], each[2].strip()) for each in _DIRECTIVE.finditer(text)]
+    for number, (word, rest) in enumerate(rows):
+        if word.startswith("if"):
+            behind = rows[number + 1] if number + 1 < len(rows) else ("", "")
+            is_guard = word == "ifndef" and behind[0] == "define" and behind[1].split()[:1] == rest.split()[:1]
+            conditions.append(not is_guard)
+        elif word == "endif" and conditions:
+            conditions.pop()
+        elif word.startswith("el") and conditions:
+            conditions[-1] = True
+        elif word == "include" and not any(conditions):
+            found.update(find_includes(f"#include {rest}"))
+    return found
 
 
 def split_dependencies(text: str) -> list[str]:

@@ -6,13 +6,17 @@ Every name becomes something that takes any use (`ri::Anything`) and says in the
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from types import MappingProxyType
 from typing import NamedTuple
 
 _ERROR = re.compile(r"^(?P<path>[^\s:][^:]*):(?P<line>\d+):(?P<column>\d+): (?:fatal )?error: (?P<text>.*)$")
 _QUOTED = re.compile(r"'([^']*)'")
 _OWN = ("std", "__gnu_cxx", "ri")
 _NAME = re.compile(r"[A-Za-z_]\w*")
+_ASKED = re.compile(r"\s*(?:\.|->)\s*(?:template\s+)?([A-Za-z_]\w*)")
+_FOLLOWED = 4
+"""Lines of the code in which the use of a name may go on."""
 _HOOKS = frozenset(
     ("rclcpp::Node", "rclcpp::Publisher", "rclcpp::Subscription", "rclcpp::QoS", "rclcpp::NodeOptions",
      "ros::NodeHandle", "ros::Publisher", "XmlRpc::XmlRpcValue", "ri::Anything")
@@ -40,21 +44,24 @@ def parse_errors(output: str) -> list[CompileError]:
 class StubTable:
     """What is declared so far. read_line: a line of a file, counted from 1, empty where there is none. is_own: whether
     the code itself declares a name in a scope, so that it is not for us to declare. list_bases: the bases of a class
-    of the code, as written."""
+    of the code, as written. extras: members that other units of the workspace added to classes of the facades."""
 
     def __init__(
         self,
         read_line: Callable[[str, int], str],
         is_own: Callable[[str, str], bool] = lambda scope, name: False,
         list_bases: Callable[[str], Sequence[str]] = lambda name: (),
+        extras: Mapping[str, Mapping[str, str]] = MappingProxyType({}),
     ):
         self._read_line, self._is_own, self._list_bases = read_line, is_own, list_bases
         # Scope and name to what it is: `namespace`, `type`, `template`, `function`, `variable`, `constant`.
         self._names: dict[tuple[str, str], str] = {}
         # Class to its members and what these are: `member`, `function`, `type`, `constant`, `number`.
-        self._members: dict[str, dict[str, str]] = {}
+        self._members: dict[str, dict[str, str]] = {owner: dict(rows) for owner, rows in extras.items()}
         self.flags: set[str] = set()
         self._banned: set[tuple[str, str]] = set()
+        # The errors that something came of, in their order.
+        self.lessons: dict[CompileError, None] = {}
 
     def __bool__(self) -> bool:
         return bool(self._names or self._members)
@@ -70,9 +77,9 @@ class StubTable:
         return next((one for one in full if self._is_type(one) and f"::{one}".endswith(f"::{written}")), "")
 
     @property
-    def has_hooks(self) -> bool:
-        """Whether something is added to classes of the facades."""
-        return bool(_HOOKS & self._members.keys())
+    def extras(self) -> dict[str, dict[str, str]]:
+        """What is added to classes of the facades: class to its members and what these are."""
+        return {owner: self._members[owner] for owner in sorted(_HOOKS & self._members.keys())}
 
     def list_names(self) -> list[str]:
         """What is stood for, by its full name."""
@@ -83,10 +90,25 @@ class StubTable:
     def learn(self, errors: Sequence[CompileError]) -> bool:
         """Takes in what errors say; gives whether anything new came of them. What is wrong with a macro or a type has
         further errors follow, so that these are looked at only where there is nothing of the kind."""
-        for rank in (_is_of_macro, _is_of_type, lambda _: True):
-            if any([self._learn_one(each) for each in errors if rank(each)]):
+        for rank in (_is_of_macro, self._is_of_scope, lambda _: True):
+            new = [each for each in errors if rank(each) and self._learn_one(each)]
+            if new:
+                self.lessons.update(dict.fromkeys(new))
                 return True
         return False
+
+    def learn_again(self, lessons: Iterable[CompileError]) -> None:
+        """Takes in what another unit learnt of headers that both include."""
+        for each in lessons:
+            self._learn_one(each)
+
+    def _is_of_scope(self, error: CompileError) -> bool:
+        """Whether a type is missing, or a namespace."""
+        if _is_of_type(error):
+            return True
+        if not error.text.startswith("use of undeclared identifier"):
+            return False
+        return self._peek(error, _QUOTED.findall(error.text)[0]).startswith("::")
 
     def remove_names(self, errors: Sequence[CompileError]) -> bool:
         """Takes names back that the code declares itself, as errors say; these are not made again. Gives whether
@@ -107,6 +129,11 @@ class StubTable:
 
     def _learn_one(self, error: CompileError) -> bool:
         text, quoted = error.text, _QUOTED.findall(error.text)
+        if text.startswith("function-like macro") and text.endswith("is not defined"):
+            flag = f"-D{quoted[0]}(...)=0"
+            known = flag in self.flags
+            self.flags.add(flag)
+            return not known
         if _is_of_macro(error):
             flag = f"-D{quoted[0].rpartition(' ')[2]}="
             known = flag in self.flags
@@ -133,10 +160,13 @@ class StubTable:
             )
         if text.startswith("cannot refer to type member") and len(quoted) > 1:
             return self._make_function(name)
+        if text.startswith("must use '") and " tag to refer to type " in text:
+            return self._make_type(quoted[1])
         if text.startswith("no member named") and len(quoted) > 1:
+            kind = self._guess(error)
             if "in namespace" in text or "in the global namespace" in text:
-                return self._add_name(quoted[1], name, self._guess(error))
-            return self._add_member(quoted[1], name, self._guess(error))
+                return self._add_name(quoted[1], name, kind) and self._follow(error, name, kind)
+            return self._add_member(quoted[1], name, kind) and self._follow(error, name, kind)
         if text.startswith("unknown type name") and (macro := self._find_macro(error, name)):
             known = macro in self.flags
             self.flags.add(macro)
@@ -144,12 +174,35 @@ class StubTable:
         if text.startswith("unknown type name"):
             return self._add_name("", name, "template" if self._peek(error, name).startswith("<") else "type")
         if text.startswith(("use of undeclared identifier", "unknown class name", "undeclared")):
-            return self._add_name("", name, self._guess(error))
+            kind = self._guess(error)
+            return self._add_name("", name, kind) and self._follow(error, name, kind)
         if "unexpected namespace name" in text or "unexpected type name" in text:
             return self._add_name("", name, "type")
         if "template template" in text or "template argument for template type parameter must be a type" in text:
             return False
         return False
+
+    def _follow(self, error: CompileError, name: str, kind: str) -> bool:
+        """Adds what the code asks of what a new name gives, `name(...).second().third`. Gives True, since the name
+        itself is new."""
+        if kind not in ("function", "variable"):
+            return True
+        text = " ".join(self._read_line(error.path, error.line + more) for more in range(_FOLLOWED))
+        at = text.find(name, max(error.column - 1, 0))
+        at = _skip_use(text, at + len(name)) if at >= 0 else len(text)
+        while (found := _ASKED.match(text, at)) is not None:
+            at = found.end()
+            behind = _skip_use(text, at)
+            self._add_member("ri::Anything", found[1], "function" if behind > at else "variable")
+            at = behind
+        return True
+
+    def _make_type(self, name: str) -> bool:
+        """What hides a type is one."""
+        hiding = [key for key, kind in self._names.items() if key[1] == name and kind in ("function", "variable")]
+        for key in hiding:
+            self._names[key] = "type"
+        return bool(hiding)
 
     def _make_function(self, name: str) -> bool:
         """What is called of an object is no type."""
@@ -219,6 +272,8 @@ class StubTable:
             return "constant"
         if before.endswith("new"):
             return "type"
+        if before.endswith("using") and rest.startswith(";"):
+            return "type" if name[:1].isupper() and not name.isupper() else "function"
         if rest.startswith("<") and not re.match(r"<\s*[\w.()+\-]+\s*[;)&|]", rest) and ">" in rest:
             behind = rest[rest.rindex(">") + 1 :].lstrip()
             return "function" if behind.startswith("(") and not name[:1].isupper() else "template"
@@ -279,11 +334,7 @@ class StubTable:
 
     def render(self) -> str:
         """The header, to be included before all else."""
-        lines = ["#pragma once"]
-        for owner in sorted(_HOOKS & self._members.keys()):
-            members = " ".join(self._spell_members(owner, "ri::Anything" if owner == "ri::Anything" else ""))
-            lines.append(f"#define RI_EXTRA_{owner.replace('::', '_')} {members}")
-        lines.append('#include "ri_core.hpp"')
+        lines = ["#pragma once", *self.render_extras(), '#include "ri_core.hpp"']
         lines += self._define_members()
         for (scope, name), kind in sorted(self._names.items(), key=_get_order):
             opened = "".join(f"namespace {part} {{ " for part in scope.split("::") if part)
@@ -291,6 +342,14 @@ class StubTable:
             full = f"{scope}::{name}".lstrip(":")
             lines.append(f"{opened}{self._spell(full, name, kind)}{closed}")
         return "\n".join([*lines, ""])
+
+    def render_extras(self) -> list[str]:
+        """The macros that add members to classes of the facades."""
+        rows = []
+        for owner in self.extras:
+            members = " ".join(self._spell_members(owner, "ri::Anything" if owner == "ri::Anything" else ""))
+            rows.append(f"#define RI_EXTRA_{owner.replace('::', '_')} {members}")
+        return rows
 
     def _spell(self, full: str, name: str, kind: str) -> str:
         if kind == "namespace":
@@ -313,11 +372,12 @@ class StubTable:
                 pointed = own.rpartition("::")[2] or "ri::Anything"
                 constant = "const " if "Const" in name else ""
                 made = "std::unique_ptr" if "Unique" in name else "std::shared_ptr" if name.endswith("Ptr") else ""
-                rows.append(
-                    f"using {name} = {made}<{constant}{pointed}>;"
-                    if made
-                    else f"struct {name} : ri::Anything {{ RI_STAND_IN({name}) }};"
-                )
+                if made:
+                    rows.append(f"using {name} = {made}<{constant}{pointed}>;")
+                elif owner == "ri::Anything":  # which is no base of what is declared in it
+                    rows.append(f"using {name} = Anything;")
+                else:
+                    rows.append(f"struct {name} : ri::Anything {{ RI_STAND_IN({name}) }};")
             elif kind == "function":
                 body = f'{{ ri::foreign("{owner}::{name}", a...); return {{}}; }}'
                 rows.append(f"template <class... RiM, class... RiB> static ri::Anything {name}(RiB &&...a) {body}")
@@ -337,8 +397,24 @@ class StubTable:
         return [f"inline ri::Anything ri::Anything::{name};" for name in names]
 
 
+def _skip_use(text: str, at: int) -> int:
+    """Where what follows a name ends that belongs to its use: template arguments, arguments and indices."""
+    found = re.compile(r"\s*<[\w:<>,\s*&]*>(?=\s*\()").match(text, at)
+    place = found.end() if found is not None else at
+    while (opened := re.compile(r"\s*([(\[])").match(text, place)) is not None:
+        depth, place = 0, opened.end() - 1
+        while place < len(text):
+            depth += (text[place] in "([") - (text[place] in ")]")
+            place += 1
+            if depth == 0:
+                break
+    return place
+
+
 def _is_of_macro(error: CompileError) -> bool:
     """Whether a word stands before a class's name that is a macro of a header that is not here."""
+    if error.text.startswith("function-like macro") and error.text.endswith("is not defined"):
+        return True
     return re.search(r"incomplete type '(?:class|struct) [A-Z][A-Z0-9_]+'", error.text) is not None
 
 

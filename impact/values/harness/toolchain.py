@@ -111,6 +111,14 @@ def describe_version(path: str) -> str:
     return run_compiler([path, "--version"], Path("/"), 20).out
 
 
+@cache
+def find_header_folders(path: str) -> tuple[str, ...]:
+    """Where a compiler looks for headers by itself."""
+    said = run_compiler([path, "-x", "c++", "-E", "-v", "-", "-o", os.devnull], Path("/"), 20).errors
+    listed = said.partition("search starts here:\n")[2].partition("End of search list")[0]
+    return tuple(each.strip() for each in listed.splitlines() if each.startswith(" /"))
+
+
 def _read_version(path: str) -> int:
     found = _VERSION.search(describe_version(path))
     return int(found[1]) if found is not None else 0

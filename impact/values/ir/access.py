@@ -21,6 +21,8 @@ from .terms import (
     choose_term,
     compare_integers,
     count_trailing_zeros,
+    is_term,
+    join_terms,
     join_truths,
     make_bits,
     make_float_bits,
@@ -148,8 +150,9 @@ def _join_choices(offset: Any, found: list[tuple[int, Any]], type_: IrType) -> A
     for place, value in found:
         same = value is base or (isinstance(value, int) and isinstance(base, int) and value == base)
         if not same:
-            result = choose_term(offset == place, value, result, type_.bits, type_.is_float)
-    return result
+            result = join_terms(offset == place, value, result, type_.bits, type_.is_float)
+    # Once for all of them: a table has hundreds.
+    return reduce_term(result) if is_term(result) else result
 
 
 def store(run: Machine, state: State, pointer: Any, type_: IrType, value: Any, alignment: int = 1):

@@ -317,13 +317,18 @@ def choose_term(condition: Any, first: Any, second: Any, bits: int, is_float: bo
     """first where condition holds, else second; numbers or terms."""
     if isinstance(condition, int):
         return first if condition else second
+    return reduce_term(join_terms(condition, first, second, bits, is_float))
+
+
+def join_terms(condition: z3.BoolRef, first: Any, second: Any, bits: int, is_float: bool) -> Any:
+    """The same, as it is written."""
     if is_float:
         first, second = make_float(first, bits), make_float(second, bits)
     elif bits == 1:
         first, second = make_truth(first), make_truth(second)
     else:
         first, second = make_bits(first, bits), make_bits(second, bits)
-    return reduce_term(z3.If(condition, first, second))
+    return z3.If(condition, first, second)
 
 
 def convert_float_to_integer(value: Any, bits: int, float_bits: int, is_signed: bool) -> Any:
@@ -354,31 +359,41 @@ def count_trailing_zeros(term: Any) -> int:
     """How many of the lowest bits of an integer are certainly zero (at most 64)."""
     if isinstance(term, int):
         return 64 if term == 0 else (term & -term).bit_length() - 1
-    if not z3.is_bv(term):
-        return 0
+    return _count_zeros(term, {}) if z3.is_bv(term) else 0
+
+
+def _count_zeros(term: Any, known: dict[int, int]) -> int:
+    """The same of a term; known: of its parts, of which many are in it more than once."""
+    number = term.get_id()
+    if number not in known:
+        known[number] = _count_parts(term, known)
+    return known[number]
+
+
+def _count_parts(term: Any, known: dict[int, int]) -> int:
     if z3.is_bv_value(term):
-        return count_trailing_zeros(term.as_long())  # pyright: ignore[reportAttributeAccessIssue]
+        return count_trailing_zeros(term.as_long())
     kind = term.decl().kind()
     parts = [term.arg(index) for index in range(term.num_args())]
     if kind == z3.Z3_OP_BMUL:
-        return min(64, sum(count_trailing_zeros(each) for each in parts))
+        return min(64, sum(_count_zeros(each, known) for each in parts))
     if kind in (z3.Z3_OP_BADD, z3.Z3_OP_BSUB, z3.Z3_OP_BOR, z3.Z3_OP_BXOR, z3.Z3_OP_BNEG):
-        return min(count_trailing_zeros(each) for each in parts)
+        return min(_count_zeros(each, known) for each in parts)
     if kind == z3.Z3_OP_ITE:
-        return min(count_trailing_zeros(parts[1]), count_trailing_zeros(parts[2]))
+        return min(_count_zeros(parts[1], known), _count_zeros(parts[2], known))
     if kind == z3.Z3_OP_CONCAT:
         count = 0
         for each in reversed(parts):
-            zeros = count_trailing_zeros(each)
+            zeros = _count_zeros(each, known)
             count += min(zeros, each.size())
             if zeros < each.size():
                 break
         return min(64, count)
     if kind in (z3.Z3_OP_ZERO_EXT, z3.Z3_OP_SIGN_EXT):
-        zeros = count_trailing_zeros(parts[0])
+        zeros = _count_zeros(parts[0], known)
         return 64 if zeros >= parts[0].size() else zeros
     if kind == z3.Z3_OP_BSHL and z3.is_bv_value(parts[1]):
-        return min(64, count_trailing_zeros(parts[0]) + parts[1].as_long())
+        return min(64, _count_zeros(parts[0], known) + parts[1].as_long())
     if kind == z3.Z3_OP_EXTRACT and term.params()[1] == 0:
-        return min(64, count_trailing_zeros(parts[0]))
+        return min(64, _count_zeros(parts[0], known))
     return 0

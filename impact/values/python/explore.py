@@ -24,6 +24,11 @@ _KINDS = {
 }  # fmt: skip
 
 
+_ACTION_PARTS = {"execute": "Goal", "goal": "Goal", "feedback": "Feedback", "done": "Result"}
+_LAST_STATE = 9
+"""Of a goal, as actionlib_msgs/GoalStatus has them."""
+_ANSWERING = frozenset(("execute", "goal", "cancel"))
+"""What callbacks of actions are for whose value is sent to the client, as rclpy has it."""
 RESPONSE = "response"
 """The path of what a service answers."""
 
@@ -32,7 +37,7 @@ class CallbackCode(NamedTuple):
     """Where a callback stands. name: dotted from its module on: `Driver.on_command`. message: `package/Name`, empty for
     a timer, the type of the service for one of these. joined: the types of all messages that a synchronizer gives it,
     empty where it is given one; place: of this one among them. kind: as of a callback; has_response: a service gives it
-    the response to fill in, as rclpy does."""
+    the response to fill in, as rclpy does. role: of an action's callback: what it is for."""
 
     module: ModuleCode
     name: str
@@ -42,12 +47,16 @@ class CallbackCode(NamedTuple):
     place: int = 0
     kind: str = "subscriber"
     has_response: bool = False
+    role: str = ""
 
     def list_messages(self) -> list[tuple[str, str]]:
         """The messages that it is given: path of the input, type. A response is empty, and no input."""
         if self.kind == "service":
             response = [(RESPONSE, f"{self.message}Response")] if self.has_response else []
             return [("request", f"{self.message}Request"), *response]
+        if self.kind == "action":
+            part = _ACTION_PARTS.get(self.role, "")
+            return [(part.lower(), f"{self.message}{part}")] if part else []
         if not self.joined:
             return [("msg", self.message)] if self.message else []
         return [("msg" if at == self.place else f"msg{at + 1}", type_) for at, type_ in enumerate(self.joined)]
@@ -109,7 +118,9 @@ def _take_way(
         _forget_preparation(run)
         watch.start(node, function)
         given: list[Any] = [] if node is None else [node]
-        for path, type_ in callback.list_messages():
+        if callback.kind == "action":
+            given.extend(_make_action_arguments(callback, messages, run))
+        for path, type_ in callback.list_messages() if callback.kind != "action" else ():
             if path == RESPONSE:
                 given.append(messages.make_empty(type_))
             else:
@@ -117,7 +128,8 @@ def _take_way(
         machine.is_quiet = False
         run.is_preparing = False
         returned = machine.call_function(function, [*given, *_make_others(function, len(given))], {})
-        if callback.kind == "service" and returned is not None:
+        answers = callback.kind == "service" or (callback.has_response and callback.role in _ANSWERING)
+        if answers and returned is not None:
             run.note_effect("reply", RESPONSE)
         watch.finish()
     except PythonThrownError as error:
@@ -143,6 +155,32 @@ def _take_way(
         names = ", ".join(list(run.not_modelled)[:3])
         return _make_path(run, Reaction.UNKNOWN, reason=f"what {names} does is not known")
     return _make_path(run, Reaction.LOG_ONLY if run.logs else Reaction.IGNORED)
+
+
+def _make_action_arguments(callback: CallbackCode, messages: Messages, run: PythonRun) -> list[Any]:
+    """What a callback of an action is given: messages in rospy, handles and futures in rclpy."""
+
+    def make(part: str) -> Any:
+        return messages.make_input(run, f"{callback.message}{part}", part.lower())
+
+    role = callback.role
+    if not callback.has_response:
+        if role == "done":
+            return [run.get_number("state", _LAST_STATE), make("Result")]
+        return [] if role == "active" else [make(_ACTION_PARTS[role])]
+    if role == "goal":
+        return [make("Goal")]
+    if role == "feedback":
+        return [Handle("action message", "feedback_msg", {"feedback": make("Feedback")})]
+    if role in ("execute", "cancel", "accepted"):
+        return [Handle("goal", "goal_handle", {"request": make("Goal")})]
+    if role == "response":
+        return [Handle("future", "future", Handle("goal", "goal_handle", {}))]
+    if role == "result":
+        status = run.get_whole("status", 8, True)
+        result = Handle("action message", "result", {"result": make("Result"), "status": status})
+        return [Handle("future", "future", result)]
+    raise NotModelledError("a callback of an action whose argument is not known")
 
 
 def _forget_preparation(run: PythonRun) -> None:

@@ -71,7 +71,9 @@ _LOGGER_METHODS = frozenset((
 _HANDLES = {
     "rospy.Publisher": "publisher", "rospy.Subscriber": "subscription", "rospy.ServiceProxy": "client",
     "rospy.Service": "server", "rospy.Timer": "timer", "rospy.Rate": "rate", "actionlib.SimpleActionClient": "action",
-    "actionlib.ActionClient": "action", "rclpy.action.ActionClient": "action", "tf.TransformBroadcaster": "broadcaster",
+    "actionlib.ActionClient": "action", "rclpy.action.ActionClient": "action", "rclpy.action.ActionServer": "server",
+    "actionlib.SimpleActionServer": "goal", "actionlib.ActionServer": "server",
+    "tf.TransformBroadcaster": "broadcaster",
     "tf2_ros.TransformBroadcaster": "broadcaster", "tf2_ros.StaticTransformBroadcaster": "broadcaster",
     "tf2_ros.transform_broadcaster.TransformBroadcaster": "broadcaster", "threading.Lock": "lock",
     "threading.RLock": "lock", "tf.TransformListener": "listener", "tf2_ros.TransformListener": "listener",
@@ -126,6 +128,8 @@ def find_message_type(name: str) -> str:
         # `SetBoolResponse` of ROS 1, `SetBool.Response` of ROS 2.
         whole = "".join(parts[2:])
         is_part = parts[1] == "srv" and len(parts) <= 4 and whole.endswith(("Request", "Response"))
+        # `Count.Goal` of ROS 2; in ROS 1 these are messages.
+        is_part |= parts[1] == "action" and len(parts) == 4 and whole.endswith(("Goal", "Result", "Feedback"))
         return f"{parts[0]}/{whole}" if is_part else ""
     return {
         "rospy.Header": "std_msgs/Header", "rospy.AnyMsg": "",
@@ -365,6 +369,8 @@ def find_member(machine: Machine, owner: Any, name: str) -> Any:
             return KnownMethod(owner.content, name) if name != "__init__" else Outside("rclpy.init")
         if owner.kind == "parameter" and name == "value":
             return owner.content
+        if owner.kind in ("goal", "action message"):
+            return _find_action_member(machine, owner, name)
     if isinstance(owner, (int, float)) and not isinstance(owner, bool) and name in ("real", "imag"):
         return owner if name == "real" else 0
     if isinstance(owner, (str, SymbolicText)) and not hasattr(str, name):
@@ -581,6 +587,10 @@ def _call_handle_method(machine: Machine, handle: Handle, name: str, given: list
                 run.note_effect("service" if kind == "client" else "action", handle.name)
             return Opaque(f"{handle.name}.{name}()")
         return Opaque(f"{handle.name}.{name}()")
+    if kind == "goal":
+        return _call_goal(machine, handle, name)
+    if kind == "future":
+        return handle.content if name == "result" and handle.content is not None else Opaque(f"{handle.name}.{name}()")
     if kind == "broadcaster":
         if loud:
             run.note_effect("transform", handle.name)
@@ -611,6 +621,36 @@ def _call_handle_method(machine: Machine, handle: Handle, name: str, given: list
         if name in ("shutdown", "cancel", "reset", "unregister", "destroy") and loud:
             run.note_effect("member", handle.name)
         return Opaque(f"{handle.name}.{name}()")
+    return Opaque(f"{handle.name}.{name}()")
+
+
+def _find_action_member(machine: Machine, handle: Handle, name: str) -> Any:
+    """A member of a goal of an action, or of what comes of one."""
+    if isinstance(handle.content, dict) and name in handle.content:
+        return handle.content[name]
+    if handle.kind == "goal" and name in ("is_cancel_requested", "accepted"):
+        return machine.run.get_truth(f"~{name}")
+    if name in ("goal_id", "stamp", "status") or handle.kind == "action message":
+        return Opaque(f"{handle.name}.{name}")
+    return KnownMethod(handle, name)
+
+
+_ANSWERS = frozenset((
+    "succeed", "abort", "canceled", "publish_feedback", "execute", "set_succeeded", "set_aborted", "set_preempted",
+    "set_accepted", "set_rejected", "set_canceled", "accept_new_goal", "cancel_goal", "cancel_goal_async",
+))  # fmt: skip
+"""Methods of goals, and of servers of one goal, which others hear of."""
+
+
+def _call_goal(machine: Machine, handle: Handle, name: str) -> Any:
+    """A method of a goal of an action, or of a server that has one at a time."""
+    if name in _ANSWERS and not machine.is_quiet:
+        machine.run.note_effect("action", handle.name)
+    if name in ("is_preempt_requested", "is_new_goal_available", "is_active"):
+        return machine.run.get_truth(f"~{name}")
+    if name == "get_result_async" and not machine.is_quiet:
+        machine.run.note_effect("action", handle.name)
+        return Handle("future", "result_future")
     return Opaque(f"{handle.name}.{name}()")
 
 

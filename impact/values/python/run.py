@@ -252,6 +252,12 @@ class PythonRun:
         wide = count_bits(0, high)
         return Whole(z3.ZeroExt(wide - bits, term) if wide > bits else term, 0, high)
 
+    def get_number(self, path: str, most: int) -> Whole:
+        """The input of a path, a whole number of 8 bits that is not above another one."""
+        number = self.get_whole(path, 8, False)
+        self._assume_once(path, z3.ULE(number.term, most))
+        return Whole(number.term, 0, most)
+
     def get_truth(self, path: str) -> Truth:
         """The input of a path, true or false."""
         term = self._get_input(path, InputKind.BOOLEAN, 8, False)

@@ -21,6 +21,7 @@ class LifecycleNode : public rclcpp::Node, public node_interfaces::LifecycleNode
   RCLCPP_SMART_PTR_DEFINITIONS(LifecycleNode)
   using rclcpp::Node::Node;
   explicit LifecycleNode(const std::string &name, const rclcpp::NodeOptions &options = {}, bool = true) : rclcpp::Node(name, options) {}
+  LifecycleNode(const std::string &name, const std::string &space, const rclcpp::NodeOptions &options, bool) : rclcpp::Node(name, space, options) {}
   std::shared_ptr<LifecycleNode> shared_from_this() { return std::static_pointer_cast<LifecycleNode>(rclcpp::Node::shared_from_this()); }
   template <class M, class... O> std::shared_ptr<LifecyclePublisher<M>> create_publisher(const std::string &topic, const rclcpp::QoS &, O &&...) { auto made = std::make_shared<LifecyclePublisher<M>>(); made->ri_topic = topic; made->ri_keep_name(topic); return made; }
   const State &get_current_state() const { static State state(3); return state; } template <class... A> const State &trigger_transition(A &&...) { return get_current_state(); } template <class... A> const State &configure(A &&...) { return get_current_state(); } template <class... A> const State &activate(A &&...) { return get_current_state(); } template <class... A> const State &deactivate(A &&...) { return get_current_state(); } template <class... A> const State &shutdown(A &&...) { ri::effect("shutdown", "node"); return get_current_state(); } template <class... A> const State &cleanup(A &&...) { return get_current_state(); }

@@ -38,6 +38,12 @@
 #define RCLCPP_WEAK_PTR_DEFINITIONS(...) using WeakPtr = std::weak_ptr<__VA_ARGS__>;
 #define RCLCPP_DISABLE_COPY(...) __VA_ARGS__(const __VA_ARGS__ &) = delete; __VA_ARGS__ &operator=(const __VA_ARGS__ &) = delete;
 #define RCLCPP_PUBLIC
+#define RCLCPP_VERSION_MAJOR 30
+#define RCLCPP_VERSION_MINOR 1
+#define RCLCPP_VERSION_PATCH 6
+#define RCLCPP_VERSION_STR "30.1.6"
+#define RCLCPP_VERSION_GTE(major, minor, patch)                                                               \
+  ((major) < 30 || ((major) == 30 && ((minor) < 1 || ((minor) == 1 && (patch) <= 6))))
 #define RCLCPP_LOCAL
 
 typedef int rcl_ret_t;
