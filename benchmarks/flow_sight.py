@@ -6,16 +6,22 @@ sources judged it benchmarks/systems/NAME.drawn.jsonl. A record is a fact, never
                is from), certain; verdict: `right`, `wrong name`, `wrong node`, `wrong type`, `none` (nothing such is
                there), `open` (the sources do not tell); why: one clause
     site       a place in C++ or Python code that a search of the text takes for an API call: repo, path, line, role;
+               name, of those that were judged before: what a reader makes of it, before a launch file renames it;
                found: the graph has an endpoint, parameter or timer there, or names the place as not resolved, or leaves
                out its file or package and says so (`named`);
-               verdict, of those that are not found: `call` or `none` (the text is no such call)
+               verdict, of those that are not found, or were judged before: `call` or `none` (the text is no such call)
+    known      an endpoint of a node whose program a reader read as a whole before there was a graph: repo, role, node,
+               name, as a running system shows them; found: the graph has it, `certain` or not (`stated`), or not (``)
 
-usage: flow_sight.py draw --set NAME --clones FOLDER [--number 20] [--seed 18]
+usage: flow_sight.py sites --set NAME --clones FOLDER [--number 20] [--seed 18]
+       flow_sight.py draw --set NAME --clones FOLDER [--number 20] [--seed 18]
        flow_sight.py score --set NAME
        flow_sight.py recheck --set NAME --clones FOLDER
 
-`draw` writes the records without verdicts; `score` prints the figures of those that have one; `recheck` prints which
-endpoints that were judged right the graph of today still has, which wrong ones it still states, and which sites it has.
+`sites` writes the sites alone, which need no graph: they can be judged before anybody runs `graph`. `draw` writes the
+records without verdicts, and keeps what was said before of sites and of known endpoints; `score` prints the figures of
+those that have one; `recheck` prints which endpoints that were judged right the graph of today still has, which wrong
+ones it still states, and which sites it has.
 """
 
 from __future__ import annotations
@@ -131,10 +137,10 @@ def find_clone(clones: Path, repo: str) -> mining.Clone:
     return found[0]
 
 
-def draw(clone: mining.Clone, commit: str, number: int, seed: int) -> Iterator[dict]:
-    """Records of a system: as many endpoints and sites, each chosen at random."""
+def draw(clone: mining.Clone, commit: str, number: int, seed: int, before: list[dict]) -> Iterator[dict]:
+    """Records of a system: as many endpoints and sites, each chosen at random. before: what was written already."""
     chance = random.Random(f"{seed} {clone.name} {commit}")
-    found, tree = read_graph(clone, commit), open_tree(clone.folder, commit)
+    found = read_graph(clone, commit)
     about = {"repo": clone.name, "commit": commit}
     names = {node["id"]: node["name"] for node in found["nodes"]}
     endpoints = [
@@ -146,14 +152,30 @@ def draw(clone: mining.Clone, commit: str, number: int, seed: int) -> Iterator[d
         for one in found[listed] if not one.get("implied") and one.get("topic")
     ]  # fmt: skip
     yield from chance.sample(endpoints, min(number, len(endpoints)))
+    have = defaultdict(set)
+    for listed, role in ROLES.items():
+        for one in found[listed]:
+            key = role, names.get(one["node"], one["node"]), one.get("topic")
+            have[key].add("certain" if is_certain(one, names) else "stated")
+    for one in before:
+        if one["kind"] == "known":
+            stated = have[one["role"], one["node"], one["name"]]
+            yield {**one, "found": min(stated, default="")}
     seen = SeenPlaces(found)
-    tree_sites = []
+    for one in [one for one in before if one["kind"] == "site"] or draw_sites(clone, commit, number, seed):
+        place = one["path"], one["line"]
+        yield {**one, "found": seen.has(one["role"], *place), "named": seen.names(*place)}
+
+
+def draw_sites(clone: mining.Clone, commit: str, number: int, seed: int) -> Iterator[dict]:
+    """Records of as many sites of a system, chosen at random; without what the graph has there."""
+    chance = random.Random(f"{seed} {clone.name} {commit} sites")
+    tree, found = open_tree(clone.folder, commit), []
     for entry in tree.list_entries():
         if entry.path.endswith((*_CODE, ".py")) and not _TESTS.search(entry.path):
-            tree_sites += [(role, entry.path, line) for role, line in list_sites(entry.path, tree.read(entry.path))]
-    for role, path, line in chance.sample(tree_sites, min(number, len(tree_sites))):
-        yield {**about, "kind": "site", "role": role, "path": path, "line": line,
-               "found": seen.has(role, path, line), "named": seen.names(path, line)}  # fmt: skip
+            found += [(role, entry.path, line) for role, line in list_sites(entry.path, tree.read(entry.path))]
+    for role, path, line in chance.sample(found, min(number, len(found))):
+        yield {"repo": clone.name, "commit": commit, "kind": "site", "role": role, "path": path, "line": line}
 
 
 def recheck(clones: Path, systems: list[dict], records: list[dict]) -> int:
@@ -219,11 +241,14 @@ def score(records: list[dict]) -> None:
         calls = [one for one in sites_of_calls if one["role"] == role]
         found, named = sum(one["found"] for one in calls), sum(one["named"] and not one["found"] for one in calls)
         print(f"{role}: {found} of {len(calls)} found, {named} more named as not resolved")
+    for role in sorted({one["role"] for one in records if one["kind"] == "known"}):
+        states = Counter(one["found"] for one in records if one["kind"] == "known" and one["role"] == role)
+        print(f"known {role}: {states['certain']} of {states.total()} certain, {states['stated']} more stated")
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("command", choices=("draw", "score", "recheck"))
+    parser.add_argument("command", choices=("sites", "draw", "score", "recheck"))
     parser.add_argument("--set", required=True)
     parser.add_argument("--clones", type=Path)
     parser.add_argument("--number", type=int, default=20)
@@ -236,12 +261,15 @@ def main() -> None:
     systems = [json.loads(line) for line in (SETS / f"{options.set}.systems.jsonl").read_text().splitlines()]
     if options.command == "recheck":
         sys.exit(recheck(options.clones, systems, [json.loads(line) for line in drawn.read_text().splitlines()]) > 0)
+    before = [json.loads(line) for line in drawn.read_text().splitlines()] if drawn.exists() else []
     failures = 0
     with drawn.open("w") as out:
         for system in systems:
             try:
                 clone = find_clone(options.clones, system["repo"])
-                records = list(draw(clone, system["commit"], options.number, options.seed))
+                about = clone, system["commit"], options.number, options.seed
+                known = [one for one in before if one["repo"] == clone.name and one["kind"] != "endpoint"]
+                records = list(draw_sites(*about) if options.command == "sites" else draw(*about, known))
             except GraphFailed as error:
                 print(error, file=sys.stderr)
                 failures += 1

@@ -150,12 +150,14 @@ class FlowFunction(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class DataMember(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A data member or a constant. type as written; value: its initialiser."""
+    """A data member or a constant. type as written; value: its initialiser. shared: it is of the class, not of each
+    object."""
 
     name: str
     type: str
     line: int
     value: FlowExpr | None = None
+    shared: bool = False
 
 
 class FlowClass(msgspec.Struct, frozen=True, array_like=True, gc=False):

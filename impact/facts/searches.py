@@ -17,9 +17,9 @@ from .usage import (
     UsageTable,
     WatchedUse,
     declares,
-    enumerates,
     find_methods,
     find_uses,
+    has_enum_constant,
     initializes_variable,
     list_row_uses,
 )
@@ -59,7 +59,7 @@ def _find_word_use(data: bytes, word: str) -> WordUse:
     in_macros = scan(data).macro_lines
     outside = next((use for use in find_word_uses(data, word) if use[0] not in in_macros), None)
     line, column, conditions = outside or next(find_word_uses(data, word), (1, 0, ()))
-    own = initializes_variable(data, word) or declares(data, word) or enumerates(data, word)
+    own = initializes_variable(data, word) or declares(data, word) or has_enum_constant(data, word)
     return WordUse(word, line, column, conditions, own, outside is None)
 
 

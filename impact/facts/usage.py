@@ -248,7 +248,7 @@ _LONGEST_ENUM = 20_000
 _WORD = re.compile(rb"\w")
 
 
-def enumerates(data: bytes, constant: str) -> bool:
+def has_enum_constant(data: bytes, constant: str) -> bool:
     """Whether a C++ file has a constant of this name in an enum."""
     for at, end in _find_occurrences(constant.encode(), data):
         begins = data.rfind(b"enum", max(0, at - _LONGEST_ENUM), at)

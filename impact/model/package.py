@@ -985,7 +985,7 @@ class PackageJoin:
         surely = set(walk(sources, self._list_searched)) | sources
         for path, (role, public, targets, conditions) in roles.items():
             for to, include in self.resolved.get(path, ()) if targets and path in surely else ():
-                if to is None or self._searches(path, to, include):
+                if to is None or self._is_searched(path, to, include):
                     continue
                 around = conditions + self.macros.resolve_conditions(include.conditions, targets)
                 at = At(path, include.line, include.column)
@@ -994,9 +994,9 @@ class PackageJoin:
     def _list_searched(self, path: str) -> Iterator[str]:
         """The files that the includes of a file are resolved to, where compilers find them."""
         found = self.resolved.get(path, ())
-        return (to for to, include in found if to is not None and self._searches(path, to, include))
+        return (to for to, include in found if to is not None and self._is_searched(path, to, include))
 
-    def _searches(self, path: str, to: str, include: Include) -> bool:
+    def _is_searched(self, path: str, to: str, include: Include) -> bool:
         """Whether the compiler finds the file that an include is resolved to, beside the one that has it or in a folder
         that it is told to search, or that cannot be known."""
         ending = f"/{include.path}"
@@ -1858,7 +1858,7 @@ class PackageJoin:
         own = [file for place, file in self.setup if posixpath.dirname(place) == self.path]
         if self.build_type != "ament_python" or not any(file.packages or file.entry_points for file in own):
             return False
-        if not path.endswith(".py"):
+        if posixpath.splitext(path)[1] not in ("", ".py"):  # settings are judged wherever they lie
             return False
         if f"{folder}/__init__.py" in self.files or path.endswith((".launch.py", "_launch.py")):
             return False

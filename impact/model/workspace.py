@@ -42,6 +42,7 @@ from ..targets.surface.fields import ROS1_SUFFIXES, make_snake_case
 from ..targets.tables import compute_data_version
 from ..tree.paths import Tree, is_vendored
 from .cmake.build import At, Build
+from .cmake.installed import collect_installed_headers
 from .cmake.interpret import interpret, list_extras
 from .cmake.interpreter import calls_unmodelled
 from .cpp.offered_headers import OfferedHeaders
@@ -437,9 +438,7 @@ class Workspace:
 
     def _may_install(self, package: Package, header: str) -> bool:
         """Whether a package installs a file as a header, wherever it lies in the tree, or what is not known."""
-        from .cmake.installed import collect_installed_headers
-
-        installed = collect_installed_headers(package)
+        installed = collect_installed_headers(package.build, package.linked.files)
         return not installed.known or any(f"/{place}".endswith(f"/{header}") for place in installed.headers.values())
 
     def _is_closed(self, package: Package) -> bool:

@@ -1,7 +1,7 @@
 """How uses look: calls, initialisations, members and types, told from the text of a file alone."""
 
 import pytest
-from rosimpact.impact.facts.usage import Pattern, declares, enumerates, find_use_places, initializes_variable
+from rosimpact.impact.facts.usage import Pattern, declares, find_use_places, has_enum_constant, initializes_variable
 
 CALL = Pattern("Duration", before=r"rclcpp\s*::\s*", arguments="1", names=True)
 MEMBER = Pattern("codec", before=r"\bstreams\s*\[[^\]\n]*\]\s*->\s*", after=r"\s*->")
@@ -173,4 +173,4 @@ def test_a_variable_that_a_file_declares(code, expected):
     ],
 )
 def test_a_constant_of_an_enum(code, expected):
-    assert enumerates(code.encode(), "TURN") is expected
+    assert has_enum_constant(code.encode(), "TURN") is expected

@@ -38,6 +38,23 @@ def test_crashes_that_come_anyway(paths, expected):
     assert [one.number for one in list_certain(crashes, paths, find_names)] == expected
 
 
+@pytest.mark.parametrize(
+    "begun, expected",
+    [
+        # Only where the device answers does the callback begin at all.
+        ([[UP == 0]], [0]),
+        ([[UP == 0], [UP == 1, ERROR == 2]], []),
+        ([[SPEED == 3]], []),
+        ([[UP == 0, SPEED == 3]], [0]),
+        ([], []),
+    ],
+)
+def test_what_was_asked_before_the_callback_begins_is_as_it_was_then(begun, expected):
+    paths = [make_path(UP == 0, SPEED == 0)]
+    crashes = [DoubtfulCrash(0, CrashKind.INDEX)]
+    assert [one.number for one in list_certain(crashes, paths, find_names, begun)] == expected
+
+
 def test_what_has_to_do_with_the_unknown():
     conditions = (UP == 1, ERROR == SPEED, SPEED > 3, LIMIT == 0)
     assert split_foreign(conditions, find_names) == [UP == 1, ERROR == SPEED, SPEED > 3]

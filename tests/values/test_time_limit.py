@@ -76,3 +76,16 @@ def test_parts_that_a_term_has_often_are_looked_at_once():
     for place in range(60):
         term = z3.If(z3.BitVec("x", 64) == place, term, term + 16)
     assert count_trailing_zeros(term) == 3  # which takes for ever otherwise
+    left = right = z3.BitVec("x", 64) * 8
+    for place in range(60):
+        x = z3.BitVec("x", 64)
+        left, right = z3.If(x == place, left, right), z3.If(x == place + 100, right, left)
+    assert count_trailing_zeros(z3.If(x == 5, left, right)) == 3
+
+
+def test_a_long_chain_of_choices_is_looked_at_to_its_end():
+    place = z3.BitVec("x", 64)
+    term = z3.BitVecVal(4, 64)
+    for number in range(3000):
+        term = z3.If(place == number, z3.BitVecVal(8 * number, 64), term)
+    assert count_trailing_zeros(term) == 2

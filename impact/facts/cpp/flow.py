@@ -26,6 +26,7 @@ from .flow_grammar import (
     find_node_readers,
     list_children,
 )
+from .flow_macros import expand_macros
 from .flow_statements import STATEMENTS, STAYS, CppStatements
 from .flow_values import OPERATOR, PASS, READ, flatten, strip_template
 from .lexical import EXPORTING, find_at_line_starts, list_exports, scan
@@ -37,6 +38,7 @@ INCLUDED = re.compile(r"#[ \t]*include[ \t]*[<\"]([\w./+-]+)[>\"]")
 
 def extract(data: bytes) -> FlowFile:
     """The flow of one C or C++ file. Never raises; what did not parse is in `unread`, what went wrong in `problems`."""
+    data = expand_macros(data)
     readers: dict[bytes, _File] = {}
 
     def is_misread(source: Cleaned, root: Node) -> bool:
@@ -183,7 +185,8 @@ class _File(CppStatements):
         said = strip_template(self.spell_node(target))
         if any(self.text[child.start_byte : child.end_byte] == "namespace" for child in children[:2]):
             self.aliases.append(Alias("*", said, name))
-        else:
+        elif not owner or said.split("::")[-2:-1] != said.split("::")[-1:]:
+            # `using Base::Base` in a class takes over constructors, and gives nothing a name.
             self.aliases.append(Alias(said.rpartition("::")[2], said, name))
 
     def enter_namespace_alias_definition(self, node: Node, name: str, owner: str, conditions) -> None:
@@ -258,7 +261,8 @@ class _File(CppStatements):
                 value = self.visit_initializer(given, type_, base, READ, target)
             else:
                 value = self.follow(given, base, READ, target)
-        member = DataMember(variable if owner else target, type_ + marks, self.find_line(said), value)
+        shared = bool(owner) and any(one.text == b"static" for one in children[:index])
+        member = DataMember(variable if owner else target, type_ + marks, self.find_line(said), value, shared)
         (self.members if owner else self.constants).append(member)
 
     def find_function_declarator(self, node: Node) -> Node | None:

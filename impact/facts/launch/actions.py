@@ -28,6 +28,7 @@ class ValuePart(msgspec.Struct, frozen=True, array_like=True, gc=False):
     | eval | `roslaunch` or `launch`: whose rules the expression follows | the expression |
     | command | | the command line whose output it is |
     | content | | the path of the file whose content it is |
+    | yaml | | the path of a YAML file, then the keys that lead to the value in it |
     | has-node | | a parameter file, the name of a node: whether it has parameters for it |
     | join | | parts of a path |
     | equals, and, or, in | | two values; values; values; what is sought and the values it may be |

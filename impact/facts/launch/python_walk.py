@@ -512,6 +512,11 @@ class Walker:
         if isinstance(left, Items) and isinstance(right, Items):
             self.count_steps(len(left.items) + len(right.items))
             return Items([*left.items, *right.items], len(self.conditions), left.kind)
+        # What a YAML file holds at a key is put together as what it is: a text.
+        left, right = (
+            TextValue(self.make_text(one, node)) if isinstance(one, YamlContent) and one.keys else one
+            for one in (left, right)
+        )
         kinds = {type(left), type(right)}
         if TextValue in kinds and kinds <= {TextValue, Either, Items, Unknown}:
             # A list beside a substitution is one of these
@@ -803,6 +808,8 @@ class Walker:
             return join_all([self.make_text(item, node) for item in value.items])
         if isinstance(value, Unknown):
             return (make_other(value.source),)
+        if isinstance(value, YamlContent) and value.keys:
+            return (ValuePart("yaml", "", (value.file, *value.keys)),)
         return (make_other(get_source(node)),)
 
     def list_actions(self, value: Any, line: int, extra: tuple[ActionCondition, ...] = ()) -> Iterator[Action]:

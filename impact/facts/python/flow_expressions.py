@@ -669,6 +669,9 @@ class Expressions(SourceText):
             else:
                 use = "pass" if value.__class__ in _PATHS else "escape"
                 arguments.append(FlowExpr("keyword", name, (self.follow(value, use),)))
+        if callee.endswith(".__init__") and arguments and node.args and getattr(node.args[0], "id", None) == self.this:
+            # `Base.__init__(self, name)` is what `super().__init__(name)` is.
+            arguments = arguments[1:]
         given = tuple(arguments)
         if callee != "super":
             returned = target == "return"

@@ -9,8 +9,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from ...facts.kinds import HEADER_ENDINGS
-from ..workspace import Package
-from .build import Install
+from .build import Build, Install
 
 
 class InstalledHeaders(NamedTuple):
@@ -21,11 +20,11 @@ class InstalledHeaders(NamedTuple):
     known: bool
 
 
-def collect_installed_headers(package: Package) -> InstalledHeaders:
-    """The headers that the package's rules install, whatever condition they stand under."""
+def collect_installed_headers(build: Build, files: tuple[str, ...]) -> InstalledHeaders:
+    """The headers that a package's rules install, whatever condition they stand under. files: all of the package."""
     found: dict[str, str] = {}
-    known = not package.build.unresolved
-    for install in package.build.installs:
+    known = not build.unresolved
+    for install in build.installs:
         destination = posixpath.normpath(install.destination.replace("${CMAKE_INSTALL_INCLUDEDIR}", "include"))
         if install.kind not in ("files", "directory", "programs"):
             continue
@@ -35,11 +34,11 @@ def collect_installed_headers(package: Package) -> InstalledHeaders:
         if not f"{destination}/".startswith("include/"):
             continue
         known = known and not any("$" in item for item in install.items)
-        for path, place in list_copied_files(install, destination, package.linked.files):
+        for path, place in list_copied_files(install, destination, files):
             if place.endswith(HEADER_ENDINGS):
                 found[path] = place
-    if package.build.finds_declared:
-        known = known and package.build.packaged is not None
+    if build.finds_declared:
+        known = known and build.packaged is not None
     return InstalledHeaders(found, known)
 
 

@@ -71,6 +71,27 @@ class CommandLine:
         """Calls that put a copy of argv into their third argument, by the function they stand in."""
         return group_pairs((fn, call) for fn, call in self.code.list_calls_named(_COPIES) if len(call.arguments) == 3)
 
+    def has_own(self, value: FlowExpr, fn: Fn, depth: int = 0) -> bool:
+        """Whether a list is argv with what ROS adds to it where a launch starts the program: `--ros-args` in ROS 2, and
+        `__name:=` and `__log:=` in ROS 1, whose roscpp takes them out of the argv that it is given."""
+        if depth > _DEEPEST:
+            return False
+        if value.kind in ("make", "keyword", "index", "join") and value.parts:
+            return self.has_own(value.parts[0], fn, depth + 1)
+        if value.kind != "name":
+            return False
+        if fn.source.facts.language == "python" and self.code.resolve_name(value.text, fn.source) == "sys.argv":
+            return True
+        if fn.name == "main" and [parameter.name for parameter in fn.facts.parameters[1:2]] == [value.text]:
+            return _has_unfiltered_argv(fn)
+        if any(call.arguments[2] == value for call in self._copies.get(fn, ())):
+            return False
+        written = self.code.list_writes(self.code.identify(value.text, fn))
+        return any(
+            each.operator == "=" and each.value != value and self.has_own(each.value, writer, depth + 1)
+            for writer, each in written
+        )
+
     def find_places(self, container: FlowExpr, index: FlowExpr, fn: Fn) -> range | None:
         """The places of argv that an element may be of, None for what is no element of it; open ended where the index
         is not a number."""
@@ -91,9 +112,9 @@ class CommandLine:
 
     def excludes(self, fn: Fn, guard: int, arguments: Sequence[str]) -> bool:
         """Whether a guard cannot hold with some arguments: by how many there are, or for want of an option."""
-        number = len(arguments) + 1
+        number, more = len(arguments) + 1, _has_unfiltered_argv(fn)
         for one in list_guards(fn, guard):
-            held = [_holds(part, number) for part in one.text.split("&&")] if "||" not in one.text else [None]
+            held = [_holds(part, number, more) for part in one.text.split("&&")] if "||" not in one.text else [None]
             if (one.kind == "if" and False in held) or (one.kind == "unless" and all(each is True for each in held)):
                 return True
         wanted = self._find_flags(fn, guard)
@@ -105,9 +126,11 @@ class CommandLine:
         parts = (part for one in list_guards(fn, guard) for part in one.text.split("&&"))
         return any(_COMPARED.match(part.strip()) for part in parts) or self._find_flags(fn, guard) is not None
 
-    def decide_number(self, guard: Guard, arguments: Sequence[str]) -> bool | None:
+    def decide_number(self, guard: Guard, fn: Fn, arguments: Sequence[str]) -> bool | None:
         """Whether a guard that asks how many arguments there are holds; None for those that ask something else."""
-        holds = _holds(guard.text, len(arguments) + 1) if guard.kind in ("if", "unless") else None
+        if guard.kind not in ("if", "unless"):
+            return None
+        holds = _holds(guard.text, len(arguments) + 1, _has_unfiltered_argv(fn))
         return not holds if guard.kind == "unless" and holds is not None else holds
 
     def is_option_given(self, fn: Fn, guard: int, arguments: Sequence[str]) -> bool:
@@ -241,12 +264,23 @@ def _read(options, name: str, arguments: Sequence[str] | None) -> tuple[str | No
     return (default, "default") if isinstance(default, str) or (known and default is None) else None
 
 
-def _holds(text: str, number: int) -> bool | None:
-    """Whether a comparison of argc holds; None for what is none."""
+def _has_unfiltered_argv(fn: Fn) -> bool:
+    """Whether a function's argv has what ROS adds to it: `rclcpp::init` leaves it there, and `ros::init` does not."""
+    return fn.name == "main" and any(call.callee.endswith("rclcpp::init") for call in fn.facts.calls)
+
+
+def _holds(text: str, number: int, more: bool = False) -> bool | None:
+    """Whether a comparison of argc holds; None for what is none. more: ROS adds at least one to the number."""
     found = _COMPARED.match(text.strip())
     if found is None:
         return None
     other = int(found[2])
+    if more and "argc" in text:
+        # So many, or more of them.
+        least = number + 1
+        sure = {">": least > other, ">=": least >= other, "!=": least > other}
+        never = {"<": least >= other, "<=": least > other, "==": least > other}
+        return True if sure.get(found[1]) else False if never.get(found[1]) else None
     return {
         "==": number == other, "!=": number != other, "<": number < other, ">": number > other,
         "<=": number <= other, ">=": number >= other,

@@ -451,6 +451,18 @@ class FlowCode:
         return self._bodies.get(key, [])
 
     @cached_property
+    def fields(self) -> dict[str, tuple[str, ...]]:
+        """The data members of the classes of C++ that braces may fill one by one, in their order, by the classes' keys:
+        those without a base or a constructor."""
+        found: dict[str, tuple[str, ...]] = {}
+        for key, (cls, *more) in self._bodies.items():
+            names = tuple(one.name for one in cls.facts.members if one.type and not one.shared)
+            plain = cls.source.facts.language == "cpp" and not more and not cls.facts.bases
+            if plain and names and not any(map(self.is_constructor, self.list_functions(cls))):
+                found[key] = names
+        return found
+
+    @cached_property
     def _bodies(self) -> dict[str, list[Cls]]:
         return group_pairs((cls.key, cls) for group in self.classes.values() for cls in group)
 
@@ -535,6 +547,10 @@ class FlowCode:
         if not fn.scope or (not fn.is_lambda and (fn.source.path, fn.scope) in self._class_bodies):
             return None
         return self.by_name.get((fn.source.path, fn.scope))
+
+    def is_class_body(self, fn: Fn) -> bool:
+        """Whether a function stands for the body of a class of Python."""
+        return (fn.source.path, fn.facts.name) in self._class_bodies and fn.source.facts.language == "python"
 
     @cached_property
     def _class_bodies(self) -> set[tuple[str, str]]:
@@ -652,8 +668,46 @@ class FlowCode:
         return group_pairs((get_tail(fn.facts.owner), fn) for fn in self.functions if fn.facts.owner)
 
     def list_writes(self, variable: Variable) -> Sequence[tuple[Fn, Assignment]]:
-        """All assignments that change a variable."""
-        return self._writes.select_rows(variable, self._identify_declared)
+        """All assignments that change a variable. What objects are made with counts where their constructor is not
+        written, as that of a data class is not."""
+        cls = next(iter(self.list_class_bodies(variable.owner)), None) if variable.kind == "member" else None
+        if cls is None or cls.source.facts.language != "python":
+            return self._writes.select_rows(variable, self._identify_declared)
+        return self._list_python_member_writes(variable, cls)
+
+    @cache_method
+    def _list_python_member_writes(self, variable: Variable, cls: Cls) -> Sequence[tuple[Fn, Assignment]]:
+        rows = self._writes.select_rows(variable, self._identify_declared)
+        begun = [row for row in rows if row[0].facts.name == cls.name]
+        others = [row for row in rows if row[0].facts.name != cls.name]
+        if any(get_tail(fn.name) == "__init__" and each.guard < 0 and each.operator == "=" for fn, each in others):
+            # Each object has what its constructor assigns.
+            return [row for row in others if not self.is_class_body(row[0])]
+        given = self._list_given_fields(variable, cls)
+        made = [(fn, each) for fn, each in given if each is not None]
+        return [*(begun if len(made) < len(given) else ()), *made, *others] if given else rows
+
+    def _list_given_fields(self, variable: Variable, cls: Cls) -> list[tuple[Fn, Assignment | None]]:
+        """What a field of a class of Python whose constructor is not written is given where its objects are made, None
+        where it is left out; nothing where nobody gives it."""
+        if self.find_method(cls, "__init__"):
+            return []
+        fields = [member.name for member in cls.facts.members if member.type]
+        if variable.name not in fields:
+            return []
+        place = fields.index(variable.name) if not self.list_bases(cls)[1:] else len(fields)
+        found: dict[tuple[Fn, int, FlowExpr | None], None] = {}
+        for fn, arguments, line in self.constructions.get(cls.key, ()):
+            keywords = {one.text: one.parts[0] for one in arguments if one.kind == "keyword" and one.parts}
+            positional = [one for one in arguments if one.kind != "keyword"]
+            value = keywords.get(variable.name, positional[place] if place < len(positional) else None)
+            # What a dictionary gives may be of any field.
+            found[fn, line, FlowExpr("other", "**") if value is None and "**" in keywords else value] = None
+        rows = [
+            (fn, Assignment(f"this.{variable.name}", value, line) if value is not None else None)
+            for fn, line, value in found
+        ]
+        return rows if any(each is not None for _, each in rows) else []
 
     def list_results(self, variable: Variable) -> Sequence[tuple[Fn, FlowCall]]:
         """Calls whose result a variable keeps."""
@@ -816,8 +870,12 @@ class FlowCode:
         for one in self.list_bases(cls):
             for member in one.facts.members:
                 if member.name == name:
-                    held = member.type and not _points(member.type) and "<" not in member.type
-                    return self.find_class_of_type(member.type, one.source, one.name) if held else None
+                    if not member.type or _points(member.type):
+                        return None
+                    if "<" in member.type:
+                        # An object of a template of the code; what a container holds is another matter.
+                        return self.find_class(parse_flow_type(member.type).name, one.source, one.name)
+                    return self.find_class_of_type(member.type, one.source, one.name)
         return None
 
     def find_written_type(self, path: str, fn: Fn) -> str:
@@ -840,12 +898,24 @@ class FlowCode:
         text, source, scope = self.find_declared_type(variable, fn)
         kind = self.resolve_written(text, source, scope) if text else UNKNOWN
         if kind.name or depth > 4:
-            return kind
+            return kind if kind.name or fn.source.facts.language == "cpp" else self._find_made_type(variable, fn)
         for writer, each in self.list_writes(variable):
             kind = self.resolve_type(each.value, writer, depth + 1)
             if kind.name:
                 return kind
         return UNKNOWN
+
+    def _find_made_type(self, variable: Variable, fn: Fn) -> FlowType:
+        """The type of a variable of Python that a function, or a module, makes once: `settings = Settings()`."""
+        if variable.kind == "local":
+            holder = next((one for one in self.list_enclosing_chain(fn) if one.place == variable.owner), None)
+        else:
+            holder = self.by_name.get((variable.owner, "")) if variable.kind == "global" else None
+        made = holder.assigned.get(variable.name, ()) if holder is not None else ()
+        value = made[0].value if len(made) == 1 else None
+        if holder is None or value is None or value.kind != "make":
+            return UNKNOWN
+        return self.resolve_written(value.text, holder.source, holder.scope)
 
     def resolve_type(self, value: FlowExpr, fn: Fn, depth: int = 0) -> FlowType:
         """The type of an expression as far as it shows."""
@@ -1054,6 +1124,10 @@ class FlowCode:
             found = self.list_defined(f"{receiver}.{name}", fn.source) if variable.kind == "global" else []
             if found:
                 return found
+            owner = self.find_owner(fn) if name == "__init__" else None
+            named = self.find_class(receiver, fn.source, fn.scope) if owner is not None else None
+            if owner is not None and named is not None and named.key in {one.key for one in self.list_bases(owner)[1:]}:
+                return self.find_method(named, name)
         cls = self._find_receiver_class(receiver, fn) if depth == 0 else self._resolve_receiver(receiver, fn, depth)
         return [] if cls is None else [*self.find_method(cls, name), *self.list_overrides(cls, name)]
 
@@ -1156,9 +1230,8 @@ class FlowCode:
             if owner is None:
                 continue
             for call in fn.facts.calls:
-                if call.callee == "super().__init__":
-                    for base in self.list_bases(owner)[1:2]:
-                        found.setdefault(base.key, []).append((fn, call.arguments, call.line))
+                for base in self._list_initialised_bases(call, owner):
+                    found.setdefault(base.key, []).append((fn, call.arguments, call.line))
             for each in fn.facts.assignments:
                 if each.target == f"this.{get_tail(owner.name)}" and each.value.kind == "make":
                     found.setdefault(owner.key, []).append((fn, each.value.parts, each.line))
@@ -1167,6 +1240,16 @@ class FlowCode:
                 if made is not None and cls is not None:
                     found.setdefault(cls.key, []).append((fn, made[1], each.line))
         return found
+
+    def _list_initialised_bases(self, call: FlowCall, owner: Cls) -> list[Cls]:
+        """The bases of a class of Python that a call initialises: `super().__init__()`, `Base.__init__(self)`."""
+        if not call.callee.endswith(".__init__"):
+            return []
+        bases = self.list_bases(owner)[1:]
+        if call.callee == "super().__init__":
+            return bases[:1]
+        named = self.find_class(call.callee.removesuffix(".__init__"), owner.source, owner.name)
+        return [one for one in bases if named is not None and one.key == named.key]
 
     def is_constructor(self, fn: Fn) -> bool:
         """Whether a function is the constructor of a class of the code."""
@@ -1177,8 +1260,8 @@ class FlowCode:
         """Who makes objects by a constructor, with its arguments and line; nothing for other functions."""
         owner = self.find_owner(fn)
         if owner is not None and self.is_constructor(fn):
-            deriving = self.derived.get(owner.key, ()) if get_tail(fn.name) == "__init__" else ()
-            for cls in (owner, *(one for one in deriving if fn in self.find_method(one, "__init__"))):
+            inheriting = (one for one in self.derived.get(owner.key, ()) if self._is_inheriting(one, fn, owner))
+            for cls in (owner, *inheriting):
                 yield from (row for row in self.constructions.get(cls.key, ()) if self._is_chosen(fn, owner, row[1]))
             made = self.constructions.get(owner.key, ())
             for row in self.bases_made.get(owner.key, ()):
@@ -1186,6 +1269,13 @@ class FlowCode:
                 used = self.find_owner(row[0]) != owner or any(self._is_chosen(row[0], owner, one[1]) for one in made)
                 if self._is_chosen(fn, owner, row[1]) and (used or not made):
                     yield row
+
+    def _is_inheriting(self, cls: Cls, fn: Fn, owner: Cls) -> bool:
+        """Whether objects of a class are made by a constructor of a base: in C++ by `using Base::Base`."""
+        if get_tail(fn.name) == "__init__":
+            return fn in self.find_method(cls, "__init__")
+        written = (one for one in self.list_bases(cls) if any(map(self.is_constructor, self.list_functions(one))))
+        return next((one.key for one in written), "") == owner.key
 
     def _is_chosen(self, fn: Fn, cls: Cls, arguments: tuple[FlowExpr, ...]) -> bool:
         """Whether a constructor is the one that arguments are for: of several, one with as many parameters, if there is

@@ -131,6 +131,19 @@ class Elements:
             return None
         return [one.elements[place] for one in held]
 
+    def find_field(self, path: str, variable: Variable, fn: Fn, line: int) -> list[ListElement] | None:
+        """What a member of an object is that braces fill, as in `Part part{"a", "b"}`. None for all else, and where it
+        is written otherwise. variable: what the path names."""
+        fields = self.code.fields.get(variable.owner, ()) if variable.kind == "member" else ()
+        head = path.rpartition(".")[0]
+        if variable.name not in fields or head in ("", "this") or self.code.list_writes(variable):
+            return None
+        place = fields.index(variable.name)
+        held = self._find_held(FlowExpr("name", head), fn, line)
+        if not held or not all(one.whole and place < len(one.elements) <= len(fields) for one in held):
+            return None
+        return [one.elements[place] for one in held]
+
     def _find_held(self, value: FlowExpr, fn: Fn, line: int) -> list[HeldList] | None:
         self._left = _MOST_STEPS
         return self._list_held(value, fn, line, 0)
@@ -163,6 +176,10 @@ class Elements:
 
     def _list_made(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[HeldList] | None:
         name = get_tail(value.text.partition("<")[0])
+        if name in self.code.classes and value.parts:
+            cls = self.code.find_class(value.text, fn.source, fn.scope)
+            filled = cls is not None and cls.key in self.code.fields
+            return [HeldList(tuple(ListElement(part, fn, line) for part in value.parts))] if filled else None
         if fn.source.facts.language != "cpp" or name not in _LISTS | _MAPS:
             return None
         if len(value.parts) == 1 and value.parts[0].kind == "list" and name in _LISTS:

@@ -28,7 +28,7 @@ from .modules import CodeFile
 from .outside_constants import OutsideConstants
 from .templates import Templates
 from .types import find_header_interface, find_interface, parse_flow_type
-from .values import LOST, WHICH_TURN, FlowValue, FlowValues, make_sibling
+from .values import LOST, WHICH_TURN, FlowValue, FlowValues, join_opposites, make_sibling
 
 _NOT_YET = frozenset(("", "None", "nullptr"))
 _CONNECTS = ("connectInput", "reset")
@@ -268,7 +268,7 @@ class Sites:
 
     def _list_written_names(self, use: FrameworkCall, values: FlowValues) -> tuple[FlowValue, ...]:
         """What the name of an endpoint may be where it is made."""
-        found = tuple(values.evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line))
+        found = join_opposites(values.evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line))
         # What is empty, or nothing, was not given yet.
         empty = (FlowValue(None, "unresolved", "the name is empty"),)
         return tuple(one for one in found if one.text not in _NOT_YET) or empty

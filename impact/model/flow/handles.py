@@ -17,6 +17,9 @@ _WRITTEN = frozenset(("make", "list", "call", "name", "text", "choice", "join"))
 _SUB_NODE = "create_sub_node"
 _DEEPEST = 8
 _MOST_STEPS = 300
+# http://docs.ros.org/en/noetic/api/controller_interface/html/c++/classcontroller__interface_1_1Controller.html
+_CONTROLLER_BEGINS = frozenset(("init", "initRequest"))
+_CONTROLLER_BASES = ("controller_interface::Controller", "controller_interface::MultiInterfaceController")
 _OWN = FlowValue("")
 _LOST = FlowValue(LOST)
 
@@ -138,9 +141,22 @@ class NodeHandles:
             if place is not None:
                 for handle, giver, at in values.list_given(one, place[0], variable.name):
                     found += self._list_spaces(handle, giver, at, values, seen)
-                yield from found or [private or self._resolve_unless_handle(value, fn)]
+                told = self._find_controller_handle(one, place[0])
+                yield from found or [told or private or self._resolve_unless_handle(value, fn)]
                 return
         yield private or _OWN
+
+    def _find_controller_handle(self, fn: Fn, place: int) -> FlowValue | None:
+        """What ros_control gives the method that begins a controller for a parameter of it, None for all else: the
+        handle of the controller, whose name is its namespace, behind that of the manager if it takes both."""
+        owner = self.code.find_owner(fn) if get_tail(fn.name) in _CONTROLLER_BEGINS else None
+        names = self.code.list_base_names(owner) if owner is not None else ()
+        if not any(name.partition("<")[0].startswith(_CONTROLLER_BASES) for name in names):
+            return None
+        handles = [at for at, one in enumerate(fn.facts.parameters) if "NodeHandle" in one.type]
+        if place not in handles:
+            return None
+        return FlowValue("~") if place == handles[-1] else _OWN
 
     def _list_written(
         self, variable: Variable, value: FlowExpr, fn: Fn, line: int, values: FlowValues, seen: tuple[Variable, ...]

@@ -146,6 +146,9 @@ class NodeObjects:
             own = next(((use, name) for use, name in known if name), None)
             full, fixed = f"/<{get_tail(cls.name)}>", frozenset[str]()
             remaps: tuple[RemappingRule, ...] = ()
+            if own is None and uses:
+                # Its namespace may be known where its name is not.
+                full = self.join_namespace(uses[0], f"<{get_tail(cls.name)}>", values)
             if own is not None:
                 # A derived class may hand the options to the one that names it.
                 telling = next((use for use in uses if self._options.find_rule(use, "__ns:=", values)), own[0])

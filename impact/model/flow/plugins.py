@@ -2,8 +2,10 @@
 
 A parameter `<name>.plugin` (navigation2, MoveIt, costmaps), or `plugin`, makes the node that has it load a class into
 itself; what programs of the workspace load follows from their code, see plugin_hosts.py. A parameter `<name>.type` of a
-controller manager makes it load a controller, which is a node of its own of that name, in the manager's namespace.
-Source: nav2's "Configuration Guide", ros2_control's "Controller Manager".
+controller manager makes it load a controller, which is a node of its own of that name, in the manager's namespace. In
+ROS 1 the controllers are those that a launch file names to a spawner, each with its parameter `<name>/type`; what one
+has is in the namespace of its name, and is shown as if it were a node.
+Source: nav2's "Configuration Guide", ros2_control's and ros_control's "Controller Manager".
 """
 
 from __future__ import annotations
@@ -15,14 +17,20 @@ from msgspec import structs
 
 from ....edges.groups import group_pairs
 from ...facts.launch.parameter_files import ParameterFile
+from ...facts.store import recall
 from ..workspace import Workspace
 from .code import get_tail
+from .file_selection import compute_stamp
 from .graph import Graph, Node
 from .launches import follow_launch_files
 from .names import get_namespace, is_open, join_name, normalise
 from .started import InWorkspace, make_instance
 
 _MANAGER = "controller_manager"
+# Programs of controller_manager in ROS 1 that load controllers, with the words that may stand before their names.
+_SPAWNERS = {"spawner": (), "controller_manager": ("load", "spawn")}
+# Options of these with a value behind them.
+_WITH_VALUE = frozenset(("--namespace", "--timeout", "--shutdown-timeout", "-t", "-n"))
 
 
 class PluginLoad(NamedTuple):
@@ -34,17 +42,24 @@ class PluginLoad(NamedTuple):
 
 def list_plugin_loads(workspace: Workspace) -> dict[str, tuple[PluginLoad, ...]]:
     """Classes of the workspace's plugins, without a leading `::`, to the nodes that parameter files of ROS 2 in it load
-    them into."""
+    them into; in ROS 1 to the controllers that launch files spawn."""
     classes: dict[str, str] = {}
     for package in workspace:
         for _, plugin in package.linked.plugins:
             if plugin.type:
                 classes[plugin.name or plugin.type] = classes[plugin.type] = plugin.type.removeprefix("::")
-    if not classes or workspace.ros != 2:
+    if not classes:
         return {}
+    store, key = workspace.extraction.store, compute_stamp(workspace)
+    find = _list_launched if workspace.ros == 2 else _list_spawned
+    # Following launch files again takes long, and what they start is remembered by the same key.
+    every = recall(store, "launched plugins", key, list[tuple[str, PluginLoad]], lambda: list(find(workspace)))
+    launched = [row for row in every if row[0] in classes]
+    if workspace.ros != 2:
+        spawned = group_pairs((classes[name], load) for name, load in dict.fromkeys(launched))
+        return {name: tuple(loads) for name, loads in spawned.items()}
     paths = [path for package in workspace for path in package.linked.files if path.endswith((".yaml", ".yml"))]
     found: dict[str, dict[PluginLoad, None]] = {}
-    launched = [row for row in _list_launched(workspace) if row[0] in classes]
     given = {load.place for _, load in launched}
     for name, load in launched:
         found.setdefault(classes[name], {})[load] = None
@@ -73,6 +88,44 @@ def _list_launched(workspace: Workspace) -> Iterator[tuple[str, PluginLoad]]:
                     place = f"{sources.find_workspace_path(at.package, at.path)}:{at.line}"
                     full = join_name(get_namespace(node), inner[-1]) if controller else node
                     yield setting.text.value, PluginLoad(full, place)
+
+
+def _list_spawned(workspace: Workspace) -> Iterator[tuple[str, PluginLoad]]:
+    """The controllers that launch files of ROS 1 spawn, by the type that the parameter server has for them."""
+    sources = InWorkspace(workspace)
+    for _, launch in follow_launch_files(workspace):
+        for started in launch.started:
+            words = _SPAWNERS.get(started.executable.value or "")
+            if started.generation != 1 or started.package.value != _MANAGER or words is None:
+                continue
+            arguments = [one.value for one in started.arguments]
+            space, names = _read_spawner([one for one in arguments if one is not None], words)
+            node = make_instance(launch, "spawner", started).name
+            for name in names:
+                full = normalise(join_name("/" + space.strip("/") if space else get_namespace(node), name))
+                setting = launch.server.get(f"{full}/type")
+                if setting is not None and setting.text.value is not None and not is_open(full):
+                    place = f"{sources.find_workspace_path(started.at.package, started.at.path)}:{started.at.line}"
+                    yield setting.text.value, PluginLoad(full, place)
+
+
+def _read_spawner(arguments: list[str], words: tuple[str, ...]) -> tuple[str, list[str]]:
+    """The namespace that a spawner is told, and the controllers. words: those of which one stands first, if any."""
+    space, names = "", []
+    option = ""
+    for one in arguments:
+        if option:
+            space = one if option in ("--namespace", "-n") else space
+            option = ""
+        elif one.startswith("--namespace="):
+            space = one.partition("=")[2]
+        elif one in _WITH_VALUE:
+            option = one
+        elif not one.startswith(("-", "_")) and ":=" not in one:
+            names.append(one)
+    if words:
+        names = names[1:] if names[:1] and names[0] in words else []
+    return space, names
 
 
 def _list_loads(path: str, file: ParameterFile | None) -> Iterator[tuple[str, PluginLoad]]:

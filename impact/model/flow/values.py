@@ -534,7 +534,10 @@ class FlowValues:
                 yield from (FlowValue(argument, "given") for argument in following)
             else:
                 given = self.arguments[max(places.start, 1) - 1 : places.stop - 1]
-                if len(given) == 1 or places.stop - places.start == 1 or self._runs_over_all(fn, line):
+                single = places.stop - places.start == 1
+                if not given and single and places.start and self.command_line.has_own(container, fn):
+                    yield FlowValue(None, "unresolved", "an argument that ROS adds to the command line")
+                elif len(given) == 1 or single or self._runs_over_all(fn, line):
                     yield from (FlowValue(argument, "given") for argument in given)
                 else:
                     yield FlowValue(None, "given", "one of several arguments of the command line")
@@ -686,6 +689,11 @@ class FlowValues:
             return
         variable = self.code.identify(path, fn)
         if self._is_in(variable, seen):
+            return
+        known = self.elements.find_field(path, variable, fn, line) if "." in path else None
+        if known:
+            for one in known:
+                yield from self._evaluate(one.value, one.fn, one.line, (*seen, variable))
             return
         is_parsed = "." in path and self.command_line.is_parsed(path, fn)
         if is_parsed:
@@ -895,6 +903,7 @@ class FlowValues:
         if variable.kind == "member":
             # What another program writes into its own object, unless nothing that runs writes it.
             written = [(w, each) for w, each in written if self.runs(w)] or written
+            written = self._select_declared(variable, written) if len(written) > 1 else written
         rows, given = self._select_given(written)
         own = [each for writer, each in rows if writer is fn and line]
         around = fn.list_guards_around(self._find_guard_of(fn, line, seen)) if line else ()
@@ -911,18 +920,23 @@ class FlowValues:
         remade = any(use.call.line < filled_before for use in sure_filled) or (
             _is_of_parameters(passed_on) and self._is_passed_before(variable, fn, filled_before)
         )
+        # What a member is declared with holds no more where the object is given something else from outside.
+        outside = (each for writer, each in rows if each.guard < 0 and each.operator == "=" and writer is not fn)
+        other = variable.kind == "member" and any("." in each.target.removeprefix("this.") for each in outside)
+        left = f"nothing else is assigned to `{variable.name}`" if other else ""
         # In Python that is an assignment too.
         elsewhere = any("." in each.target.removeprefix("this.") for _, each in rows)
         replaced = elsewhere and self.makers.is_replaced(variable)
         begins = not rows or (fn.source.facts.language == "cpp" and not replaced)
         if not begun and not given and not remade and begins:
-            found.add(self._evaluate_beginning(variable, fn, seen), rank=0)
+            found.add(_put_under_more(self._evaluate_beginning(variable, fn, seen), left), rank=0)
         for writer, others in group_pairs(row for row in rows if row[0] is not fn or not line).items():
             if remade and writer is not fn and self.code.is_constructor(writer):
                 continue
             if self.find_makers(writer) is not None and self._is_made_otherwise(writer):
                 continue
-            found.add(self._evaluate_outside(variable, writer, others, filled, origins, seen), stays=True)
+            values = self._evaluate_outside(variable, writer, others, filled, origins, seen)
+            found.add(_put_under_more(values, left if self.code.is_class_body(writer) else ""), stays=True)
         here = [(use, values) for use, values in filled if use.fn is fn and use.call.line < line]
         for use, values in filled:
             if not (use.fn is fn and use.call.line < line):
@@ -963,6 +977,44 @@ class FlowValues:
         if found.held and not values:
             yield FlowValue(None, "given", f"`{variable.name}` has no known value that passes the conditions around")
         yield from _restore_alone(values)
+
+    def _select_overridden(self, callee: str, fn: Fn) -> list[Fn]:
+        """The functions that a call may reach: of a method that deriving classes override, those of the objects that
+        are made."""
+        targets = self.code.list_targets(callee, fn)
+        head, _, name = callee.rpartition(".")
+        owner = self.code.find_owner(fn) if len(targets) > 1 and head in ("", "this") and "::" not in name else None
+        if owner is None or not self.code.list_overrides(owner, name):
+            return targets
+        kept = {target for cls in self._list_object_classes(owner) for target in self.code.find_method(cls, name)}
+        return [target for target in targets if target in kept] or targets
+
+    def _select_declared(
+        self, variable: Variable, written: Sequence[tuple[Fn, Assignment]]
+    ) -> Sequence[tuple[Fn, Assignment]]:
+        """Of what bodies of classes of Python give a member, what the objects have that are made."""
+        bodies = {fn.facts.name for fn, _ in written if self.code.is_class_body(fn)}
+        owner = next(iter(self.code.list_class_bodies(variable.owner)), None) if len(bodies) > 1 else None
+        made = self._list_object_classes(owner) if owner is not None else []
+        kept = {next((one.name for one in self.code.list_bases(cls) if one.name in bodies), "") for cls in made}
+        left = bodies - kept if kept else set()
+        return [row for row in written if row[0].facts.name not in left]
+
+    def _list_object_classes(self, owner: Cls) -> list[Cls]:
+        """A class and those that derive from it, as far as something that runs is seen to make objects of them, or a
+        host may load them; of those alone that it is about, where it is about some objects."""
+        found: list[Cls] = []
+        own = [fn for one in self.code.list_bases(owner) for fn in self.code.list_functions(one)]
+        limited = any([self.find_makers(fn) is not None for fn in own if self.code.is_constructor(fn)])
+        for cls in (owner, *self.code.derived.get(owner.key, ())):
+            functions = (fn for one in self.code.list_bases(cls) for fn in self.code.list_functions(one))
+            begun = next(filter(self.code.is_constructor, functions), None)
+            rows = [row for row in self.code.constructions.get(cls.key, ()) if self.runs(row[0])]
+            about = not limited or (begun is not None and any(row in (self.find_makers(begun) or ()) for row in rows))
+            exported = get_tail(cls.name) in {get_tail(one) for one in cls.source.facts.exports}
+            if (rows and about) or exported:
+                found.append(cls)
+        return found
 
     def _is_made_otherwise(self, fn: Fn) -> bool:
         """Whether the objects that it is about are made by other constructors than this one."""
@@ -1091,7 +1143,7 @@ class FlowValues:
         opens = True
         for place in fn.list_guards_around(guard):
             one = fn.facts.guards[place]
-            number = None if self.arguments is None else self.command_line.decide_number(one, self.arguments)
+            number = None if self.arguments is None else self.command_line.decide_number(one, fn, self.arguments)
             asks = self._may_ask(one)
             decided = self._decide_guard(one, fn, seen) if asks and not self._is_asking(one, fn, seen) else None
             if number is not None:
@@ -1301,10 +1353,12 @@ class FlowValues:
         if last in _NODE_NAME and not value.parts and not own:
             yield FlowValue(NODE)
             return
-        if last in _NODE_NAMESPACE and not value.parts and not own:
-            yield FlowValue(NAMESPACE)
-            return
         python = fn.source.facts.language == "python"
+        if last in _NODE_NAMESPACE and not value.parts and not own:
+            # That of rospy ends in a slash.
+            is_rospy = python and self.code.resolve_name(value.text, fn.source) == "rospy.get_namespace"
+            yield FlowValue(f"{NAMESPACE}/" if is_rospy else NAMESPACE)
+            return
         if python and last in _STRING_METHODS and (head or value.receiver is not None):
             yield from self._evaluate_string_method(value, fn, line, seen)
             return
@@ -1322,6 +1376,14 @@ class FlowValues:
                 for one in chosen:
                     yield from self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value)))
                 return
+        if python and last == "format" and head and not head.endswith("()") and value.receiver is None:
+            yield from self._evaluate_format(value, head, fn, line, seen)
+            return
+        if python and value.text == "int" and len(value.parts) == 1:
+            for one in self._evaluate(value.parts[0], fn, line, seen):
+                whole = one.text is None or is_number(one.text)
+                yield one if whole else FlowValue(None, "unresolved", "what `int` gives is not known")
+            return
         if value.text == "format" and len(value.parts) == 2 and (python or value.parts[0].kind != "text"):
             written = next(iter(self._evaluate(value.parts[1], fn, line, seen)), _NOT_GIVEN).text
             for one in self._evaluate(value.parts[0], fn, line, seen):
@@ -1406,6 +1468,29 @@ class FlowValues:
             except (TypeError, AttributeError):
                 yield unknown
 
+    def _evaluate_format(
+        self, value: FlowExpr, name: str, fn: Fn, line: int, seen: tuple
+    ) -> Iterator[FlowValue]:  # fmt: skip
+        """What `NAME.format()` puts together, where the text that a variable is, is known."""
+        given: dict[int | str, FlowExpr] = dict(enumerate(one for one in value.parts if one.kind != "keyword"))
+        given.update((one.text, one.parts[0]) for one in value.parts if one.kind == "keyword" and one.parts)
+        for one in self._evaluate_name(name, fn, line, seen):
+            if one.text is None:
+                yield one
+                continue
+            pieces = format_pieces(one.text) if "*" not in given and "**" not in given else None
+            asked = {piece.value for piece in pieces or () if not isinstance(piece, str)}
+            if pieces is None or not asked <= given.keys():
+                yield FlowValue(None, "unresolved", f"what `{value.text}` gives is not known")
+                continue
+            places = {field: place for place, field in enumerate(given)}
+            joined = make_join(
+                [one if isinstance(one, str) else one._replace(value=places[one.value]) for one in pieces],
+                list(given.values()),
+            )
+            for each in self._evaluate_join(joined, fn, line, seen) if joined is not None else ():
+                yield each if each.text is None else _join((one, each))._replace(text=each.text)
+
     def _evaluate_inner(
         self, callee: str, fn: Fn, line: int, seen: tuple, arguments: tuple[FlowExpr, ...] | None = None
     ) -> Iterator[FlowValue]:
@@ -1427,7 +1512,7 @@ class FlowValues:
                 return
         returned = False
         only = near[0] if near and arguments is not None else None
-        targets = self.code.list_targets(callee, fn)
+        targets = self._select_overridden(callee, fn)
         for target in targets if only is None else select_overloads(targets, only, fn):
             if self._is_in(("returns", target), seen):
                 continue
@@ -1826,6 +1911,25 @@ def spell_condition(kind: str, text: str) -> str:
         return f"!({text})" if kind == "unless" else text
     path = found[2].replace("->", ".").replace("self.", "this.")
     return path if (kind == "unless") == bool(found[1]) else f"!{path}"
+
+
+def _put_under_more(values: Iterable[FlowValue], condition: str) -> Iterable[FlowValue]:
+    """Values that are there under one more condition."""
+    return [one._replace(only_if=_join_texts(one.only_if, condition)) for one in values] if condition else values
+
+
+def join_opposites(values: Iterable[FlowValue]) -> tuple[FlowValue, ...]:
+    """Values, where the same text is so under a condition and under its opposite, without these."""
+    found = list(dict.fromkeys(values))
+    by_text = group_pairs((one.text, one.only_if) for one in found if one.text is not None and one.only_if)
+    for text, conditions in by_text.items():
+        pairs = ((each, opposite) for each in conditions for opposite in (f"!({each})", f"!{each}"))
+        both = {one for pair in pairs if pair[1] in conditions for one in pair}
+        certain = [one for one in found if one.text == text and one.only_if in both]
+        if certain:
+            found[found.index(certain[0])] = certain[0]._replace(only_if="")
+            found = [one for one in found if one not in certain]
+    return tuple(found)
 
 
 def _spell_guards(guards: Sequence[Guard], negated: bool = False) -> str:

@@ -341,6 +341,17 @@ class Filling:
             return make_unknown(show((piece,)), *(both.reasons or ("the file is not in the workspace",)))
         return wrap(format_flag(any(entry.path[:1] == (node.value,) for entry in entries)))
 
+    def fill_yaml(self, piece: ValuePart) -> LaunchText:
+        """What a YAML file that the launch file reads holds at some keys: a text or a number."""
+        texts = [self.fill(part) for part in piece.parts]
+        reasons = merge_reasons(text.reasons for text in texts)
+        entries = self.read_entries(texts[0].value) if texts[0].value is not None and not reasons else None
+        path = tuple(text.value for text in texts[1:])
+        found = [entry.value for entry in entries or () if entry.path == path]
+        if not found or not isinstance(found[-1], (str, int, float)) or isinstance(found[-1], bool):
+            return make_unknown(show((piece,)), *(reasons or ("what a YAML file holds there is not known",)))
+        return wrap(str(found[-1]))
+
     def fill_eval(self, piece: ValuePart) -> LaunchText:
         expression = self.fill(piece.parts[0])
         if expression.value is None:
@@ -382,8 +393,8 @@ OF_RUNNING: dict[str, str] = {
 _PLACE = re.compile(r"\$\(find ([\w.-]+)\)(/.*|)\Z", re.DOTALL)
 _FILLING = collect_methods(Filling, "fill_")
 # How many parts a piece needs before it can be filled in.
-_PARTS = {"executable": 2, "equals": 2, "in": 1, "choose": 3, "method": 1, "rewritten": 2, "replaced": 1, "has-node": 2,
-          "eval": 1}  # fmt: skip
+_PARTS = {"executable": 2, "equals": 2, "in": 1, "choose": 3, "method": 1, "rewritten": 2, "replaced": 1, "yaml": 2,
+          "has-node": 2, "eval": 1}  # fmt: skip
 
 
 def _rewrite_entries(entries: Sequence[ParameterEntry], rewrite: Rewrite) -> tuple[ParameterEntry, ...]:

@@ -197,12 +197,18 @@ def offer_python(
     """What others can import of a package. files, others, paths: as above. roots: the folders of its Python packages
     that it installs."""
     modules = {}
+    open_roots = {root for root in roots if any(_may_add_modules(files[p]) for p in files if p.startswith(f"{root}/"))}
     for path, facts in files.items():
         stem = _strip_ending(path)
         root = next((one for one in roots if stem == one or stem.startswith(f"{one}/")), None)
-        if root is not None and f"{root}/__init__.py" in files:
+        if root is not None and root not in open_roots and f"{root}/__init__.py" in files:
             modules[stem[len(root) - len(posixpath.basename(root)) :].replace("/", ".")] = facts.bound
     return PythonOffer(modules, PackageModules(files, others, paths).built) if modules else PythonOffer()
+
+
+def _may_add_modules(facts: PythonFile) -> bool:
+    """Whether a file gives a package modules that have no files, or looks for them in other folders."""
+    return any(use.text.startswith(("sys.modules", "pkgutil.extend_path")) for use in facts.attributes)
 
 
 def list_undefined_functions(
@@ -260,6 +266,13 @@ class PackageModules:
         return frozenset((*self.sources, *(o for o in self._others if o not in inside and o not in self._by_name)))
 
     @cached_property
+    def _open(self) -> frozenset[str]:
+        """The names of the outermost Python packages whose modules are not all known by their files."""
+        adding = [path for path, facts in self._files.items() if _may_add_modules(facts)]
+        roots = ((name, f"{root}/") for name, several in self._roots.items() for root in several)
+        return frozenset(name for name, root in roots if any(path.startswith(root) for path in adding))
+
+    @cached_property
     def sources(self) -> frozenset[str]:
         """What files with an ending, which modules may be made of, are called."""
         names = (posixpath.basename(path) for path in self._paths if not path.endswith(".py"))
@@ -310,7 +323,9 @@ class PackageModules:
         beside = posixpath.join(posixpath.dirname(program), head)
         if rest and program and beside in self._folders and head not in sys.stdlib_module_names:
             meant.add("/".join((beside, *rest)))
-        if not meant or not _GENERATED.isdisjoint(rest) or any(self.may_be_built(part) for part in rest):
+        if not meant or head in self._open or not _GENERATED.isdisjoint(rest):
+            return False
+        if any(self.may_be_built(part) for part in rest):
             return False
         there = {_strip_ending(path) for path in self._by_name.get(rest[-1], ())}
         # Some files are there that nobody could read.

@@ -154,6 +154,10 @@ def _collect_include_doubts(view: TargetView, package: Package, need: Need, name
             return (Doubt.UNCOMPILED,)
         return () if _stops_another(view, package, need) else (Doubt.DISTURBS,)
     doubts = (*_collect_unknown_doubts(view, package, need, name), *collect_compile_doubts(view, package, need))
+    # One in no folder of headers is called so by chance, where a library has its headers without a folder.
+    bare = "/" not in need.subject and need.subject not in view.workspace.rooted_headers
+    if bare and first.name in view.workspace.packages:
+        return (*doubts, Doubt.AMBIGUOUS)
     # By its name alone it is theirs: a header that lies beside others, or one that the release is known to lack.
     if not first.sure and first.kind == "system":
         return (*doubts, Doubt.AMBIGUOUS)

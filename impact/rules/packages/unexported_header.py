@@ -56,7 +56,7 @@ def unexported_header(view: TargetView, package: Package) -> Iterator[Diagnostic
         return
     headers = _list_written(package)
     kind = _find_kind(view, package)
-    installed = collect_installed_headers(package)
+    installed = collect_installed_headers(package.build, package.linked.files)
     libraries = _list_libraries(package) if kind == "library" else {}
     if not headers or not kind or (kind == "not installed" and not installed.known):
         return

@@ -44,7 +44,7 @@ _DETAIL = re.compile(r"/(?:detail|details|impl|internal)/")
 def uninstalled_header(view: TargetView, package: Package):
     if not package.build.files or not package.linked.public_headers:
         return
-    installed = collect_installed_headers(package)
+    installed = collect_installed_headers(package.build, package.linked.files)
     if not installed.known:
         return
     made = set(package.build.made)

@@ -9,7 +9,7 @@ Why it breaks
 
 Severity
     error; warning in tests, and where it is not known which folders targets search, as where find_path() looks one up,
-    or what a command that is called does.
+    or what a command that is called does, and for `<lift.h>`, which may be of a library of the system.
 
 Example
     #include "lift.h"                           // which is include/winch/lift.h, and include_directories(include)
@@ -49,7 +49,7 @@ def unsearched_header(view: TargetView, package: Package):
     searched = [path.path for path in build.list_paths() if path.how == "include"]
     looked_up = [found for found in build.found if found.how == "find_path" and f"${{{found.prefix}}}" in searched]
     variables = [one for one in searched if "$" in one]
-    if any(map(_OF_PACKAGE.fullmatch, variables)) and _answers_itself(package):
+    if any(map(_OF_PACKAGE.fullmatch, variables)) and _has_own_find_module(package):
         return  # what its own find module looks up may be any folder, those of the package too
     known = not (called or looked_up) and all(map(_OF_PACKAGE.fullmatch, variables))
     for include, header in package.linked.unsearched:
@@ -67,11 +67,12 @@ def unsearched_header(view: TargetView, package: Package):
         seen.add(place)
         inside = f"/{header}".rpartition("/include/")
         data = {"header": package.strip_path(header), "replacement": inside[2] if inside[1] else ""}
-        doubts = (*list_place_doubts(view, include.role), known or Doubt.INCOMPLETE)
+        library = include.angled and "/" not in path  # such as the system has, where it has that library
+        doubts = (*list_place_doubts(view, include.role), known or Doubt.INCOMPLETE, not library or Doubt.AMBIGUOUS)
         yield Diagnostic(include.at, path, package.name, data, doubts=doubts)
 
 
-def _answers_itself(package: Package) -> bool:
+def _has_own_find_module(package: Package) -> bool:
     """Whether a find module or a configuration of the package itself answers what it finds."""
     files = {path.rpartition("/")[2].lower() for path in package.linked.files if path.endswith(".cmake")}
     names = {found.name.lower() for found in package.build.found if found.how == "find_package"}

@@ -24,6 +24,9 @@ _FRAMEWORK = re.compile(
     r"\b(?:ros|rclcpp\w*|tf2?|tf2_ros|message_filters|image_transport|actionlib|diagnostic_updater|nodelet)::"
 )
 
+_TAKES_NODE = re.compile(r"\bNodeHandle\b|Node\s*(?:>|\*|::(?:Weak|Shared|ConstShared)Ptr\b)")
+_POINTER = re.compile(r"([\w:]+)\s*\*")
+
 
 class HarnessEntry(NamedTuple):
     """A function of a harness. name: of the C function; way: `built` or `bare`."""
@@ -119,8 +122,12 @@ class HarnessWriter:
         if cls is not None:
             for types in self._list_constructors(cls):
                 # Who is given the callback as an argument would be given none.
-                if not any(re.search(r"function\s*<|[Cc]allback", each) for each in types):
-                    yield self._build_object(callback, cls, types)
+                if any(re.search(r"function\s*<|[Cc]allback", each) for each in types):
+                    continue
+                late = self._list_late(cls, site)
+                if late:
+                    yield self._build_object(callback, cls, types, late)
+                yield self._build_object(callback, cls, types)
         elif get_tail(site.name) == "main" or "lambda" in site.name or self._has_main(site.source.path):
             yield self._run_main(callback)
 
@@ -190,7 +197,46 @@ class HarnessWriter:
         lines += [*self._write_main_call(main), "  ri::deliver_or_drop();", "}"]
         return "\n".join(lines)
 
-    def _build_object(self, callback: CppCallback, cls: Cls, types: list[str]) -> str:
+    def _list_late(self, cls: Cls, site: Fn) -> list[str]:
+        """Calls of the method by which a class is given its node after the constructor, as plugins are: one that leads
+        to what subscribes, else the first. None where that stands in a constructor."""
+        outer = self._find_outer(site)
+        code = self.reader.code
+        if code.is_constructor(outer) or get_tail(outer.name) == "main":
+            return []
+        bodies = [one for base in code.list_bases(cls) for one in code.list_functions(base)]
+        found = [
+            fn for fn in bodies
+            if not code.is_constructor(fn) and fn.facts is not outer.facts and "lambda" not in fn.name
+            and any(_TAKES_NODE.search(each.type) for each in fn.facts.parameters)
+        ]  # fmt: skip
+        if not found:
+            return []
+        names = {get_tail(outer.name)}
+        while (
+            more := {
+                get_tail(fn.name) for fn in bodies if any(get_tail(each.callee) in names for each in fn.facts.calls)
+            }
+            - names
+        ):
+            names |= more
+        first = min(found, key=lambda fn: get_tail(fn.name) not in names)
+        arguments = [
+            self._make_argument(each.type, first, 2) for each in first.facts.parameters if each.default is None
+        ]
+        return [f"node->{get_tail(first.name)}({', '.join(arguments)});", "ri::deliver();"]
+
+    def _make_argument(self, type_: str, fn: Fn, depth: int) -> str:
+        """An argument; where it points to an object of the workspace that cannot be made of nothing, one of these."""
+        pointed = _POINTER.fullmatch(re.sub(r"\bconst\b", "", type_).strip())
+        cls = self.reader.code.find_class_of_type(pointed[1], fn.source, fn.scope) if pointed is not None else None
+        makers = self.reader.list_constructors(cls) if cls is not None else []
+        if pointed is None or not depth or not makers or not makers[0]:
+            return self._spell_argument(type_)
+        given = ", ".join(self._make_argument(each, fn, depth - 1) for each in makers[0])
+        return f"new {pointed[1]}({given})"
+
+    def _build_object(self, callback: CppCallback, cls: Cls, types: list[str], late: Sequence[str] = ()) -> str:
         spaces, own = self._split_class(cls)
         bases = {get_tail(each) for each in self.reader.list_bases(cls)}
         lines = [f"namespace {part} {{" for part in spaces]
@@ -210,7 +256,7 @@ class HarnessWriter:
         lines += self._write_waiting(callback)
         lines += [f"  {own} *node = ri_make_RI_TAG();"]
         lines += ["  ri::prepare = &ri_prepare_RI_TAG_object; ri::prepare_with = node;"]
-        lines += [f"  {each}" for each in self._list_further(cls, callback.site, bases)]
+        lines += [f"  {each}" for each in (*late, *self._list_further(cls, callback.site, bases))]
         lines += ["  ri::deliver_or_drop();", "}"]
         lines += ["}" for _ in spaces]
         lines += [f'extern "C" void ri_callback_RI_TAG() {{ {"::".join(("", *spaces, ""))}ri_run_RI_TAG(); }}']

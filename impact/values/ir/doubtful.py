@@ -24,11 +24,14 @@ class DoubtfulCrash(NamedTuple):
 
 
 def list_certain(
-    crashes: Sequence[DoubtfulCrash], paths: Sequence[CallbackPath], find_names: FindNames
-) -> list[DoubtfulCrash]:
+    crashes: Sequence[DoubtfulCrash], paths: Sequence[CallbackPath], find_names: FindNames,
+    begun: Sequence[Sequence[z3.BoolRef]] = (),
+) -> list[DoubtfulCrash]:  # fmt: skip
     """Those crashes at which the same line is reached whatever the inputs are that nothing is known of, and that other
-    inputs bring about. find_names: the inputs that a condition speaks of."""
+    inputs bring about. find_names: the inputs that a condition speaks of. begun: the conditions under which the
+    callback begins, of each way that comes there; without any it begins in any case."""
     found: list[DoubtfulCrash] = []
+    begins = z3.Or(*[z3.And(*_select_foreign(each, find_names)) for each in begun]) if begun else z3.BoolVal(True)
     for rows in group_pairs(((one.kind, paths[one.number].place), one) for one in crashes).values():
         parts: list[z3.BoolRef] = []
         taken: list[DoubtfulCrash] = []
@@ -37,7 +40,7 @@ def list_certain(
             if foreign is not None:
                 parts.append(z3.And(*foreign))
                 taken.append(one)
-        if taken and _is_always(z3.Or(*parts)):
+        if taken and _is_always(z3.Implies(begins, z3.Or(*parts))):
             found += taken
     return found
 
@@ -45,12 +48,15 @@ def list_certain(
 def split_foreign(conditions: Sequence[z3.BoolRef], find_names: FindNames) -> list[z3.BoolRef] | None:
     """The conditions that have to do with what is not known; None where the last one, which is the crash itself, is
     among them."""
+    found = _select_foreign(conditions, find_names)
+    return None if not conditions or any(each is conditions[-1] for each in found) else found
+
+
+def _select_foreign(conditions: Sequence[z3.BoolRef], find_names: FindNames) -> list[z3.BoolRef]:
     names = [frozenset(find_names(each)) for each in conditions]
     reached = {name for each in names for name in each if name.startswith(_FOREIGN)}
     while more := {name for each in names if each & reached for name in each} - reached:
         reached |= more
-    if not conditions or names[-1] & reached:
-        return None
     return [each for each, own in zip(conditions, names, strict=True) if own & reached]
 
 

@@ -8,6 +8,7 @@ solver.
 
 from __future__ import annotations
 
+import ctypes
 import math
 import os
 import time
@@ -80,6 +81,7 @@ from .terms import (
 
 _DEEPEST = 300
 _MOST_STEPS = 3_000_000
+_OF_HARNESS = ("ri_begin", "ri_end", "ri_assume")
 # Variables of libraries that have a known value: the callback runs alone.
 _KNOWN_OUTSIDE = {"__libc_single_threaded": 1}
 
@@ -154,6 +156,8 @@ class Executor:
         # Places among the paths of those on which the callback had not begun.
         self.early: list[int] = []
         self.doubtful: list[DoubtfulCrash] = []
+        # The conditions under which the callback began, of each way that came there.
+        self.begun: dict[tuple[int, ...], tuple[z3.BoolRef, ...]] = {}
         self.globals: dict[str, int] = {}
         self.made_globals: dict[int, tuple[str, MemoryObject]] = {}
         self.instructions = 0
@@ -607,13 +611,28 @@ class Executor:
     def _restore_crashes(self):
         """A crash that comes whatever the values are that nothing is known of is one."""
         paths = self.exploration.paths
-        for one in list_certain(self.doubtful, paths, lambda each: self.solving.find_traits(each).names):
+        for one in self.pending:
+            self._note_beginning(one)
+        begun = list(self.begun.values())
+        for one in list_certain(self.doubtful, paths, self._find_open_names, begun):
             paths[one.number] = replace(paths[one.number], result=Reaction.CRASH, crash=one.kind, reason="")
+
+    def _find_open_names(self, condition: z3.BoolRef) -> set[str]:
+        """The inputs that a condition speaks of; what nobody has written is none that is known, either."""
+        assumed = self.solving.assumed
+        names = self.solving.find_traits(condition).names
+        return {f"~foreign {name}" if assumed.get(name) == _UNWRITTEN else name for name in names}
+
+    def _note_beginning(self, state: State):
+        if state.has_begun:
+            conditions = tuple(state.conditions[: state.begun_at])
+            self.begun.setdefault(tuple(each.get_id() for each in conditions), conditions)
 
     def _exclude_early(self):
         """Where the harness says when the callback begins, what happened before is none of it."""
         paths = self.exploration.paths
-        if len(self.early) == len(paths) and not self.program.is_function("ri_begin"):
+        # A harness in which the callback cannot begin has no call that says so.
+        if len(self.early) == len(paths) and not any(map(self.program.is_function, _OF_HARNESS)):
             return
         for number in self.early:
             path = paths[number]
@@ -640,8 +659,9 @@ class Executor:
                     if not self._go_on(state, end):
                         self._record(state, end)
                         return
-        except (MemoryError, RecursionError, z3.Z3Exception, ArithmeticError, LookupError, TypeError, ValueError,
-                AttributeError, AssertionError, ReadingError, UnknownSizeError) as problem:  # fmt: skip
+        except (MemoryError, RecursionError, z3.Z3Exception, ctypes.ArgumentError, ArithmeticError, LookupError,
+                TypeError, ValueError, AttributeError, AssertionError, ReadingError,
+                UnknownSizeError) as problem:  # fmt: skip
             instruction = state.frames[-1].get_instruction() if state.frames else None
             what = instruction.opcode if instruction is not None else "the end"
             if os.environ.get("ROSIMPACT_VALUES_RAISE"):
@@ -817,6 +837,7 @@ class Executor:
         names = frozenset().union(*(self.solving.find_traits(each).names for each in (*conditions, *shown)))
         assumed = dict.fromkeys(self.solving.assumed[name] for name in sorted(names) if name in self.solving.assumed)
         assumed.update(dict.fromkeys((*state.notes, *state.assumed_notes)))
+        self._note_beginning(state)
         if not state.has_begun:
             self.early.append(len(self.exploration.paths))
         place = end.place or self.find_place(state)
@@ -834,7 +855,7 @@ class Executor:
         ):
             kind = end.crash.value if end.crash is not None else ""
             result, reason = Reaction.UNKNOWN, f"{kind}, unless what is not known prevents it"
-            if end.crash not in (None, CrashKind.NULL, CrashKind.DANGLING) and _UNWRITTEN not in assumed:
+            if end.crash not in (None, CrashKind.NULL, CrashKind.DANGLING):
                 self.doubtful.append(DoubtfulCrash(len(self.exploration.paths), end.crash))
         if result in (Reaction.HANDLED, Reaction.LOG_ONLY, Reaction.IGNORED):
             place = NOWHERE
@@ -1295,9 +1316,16 @@ class Executor:
     def _run_branch(self, state: State, frame: Frame, instruction: Instruction):
         bit = get_integer_type(1)
         condition = self.define(state, self.read(state, frame.registers, instruction.operands[0], bit), bit)
-        label = instruction.extra[0 if self.decide(state, condition) else 1]
+        waiting = len(self.pending)
+        here, other = instruction.extra[:2] if self.decide(state, condition) else instruction.extra[1::-1]
         # A decision may have made the frame another one's, too.
-        self.enter_block(state, state.get_frame(), label)
+        frame = state.get_frame()
+        self.enter_block(state, frame, here)
+        if len(self.pending) > waiting and frame.function.blocks[other].instructions[-1].opcode == "unreachable":
+            # What ends there ends at once, and is not to be lost where time runs out.
+            state.replay = ()
+            self.pending.insert(-1, state)
+            raise Ended(None)
 
     def _run_switch(self, state: State, frame: Frame, instruction: Instruction):
         type_ = instruction.type

@@ -236,6 +236,7 @@ def note_member(call: Call) -> Any:
 def begin_callback(call: Call) -> Any:
     state = call.state
     state.has_begun = True
+    state.begun_at = len(state.conditions)
     state.effects = state.logs = state.sent = ()
     # What was called before is none of the callback's, but may have changed what it works with.
     kept = tuple(each for each in state.notes if each.startswith("a member"))

@@ -91,6 +91,8 @@ class State:
         self.logs: tuple[str, ...] = ()
         self.sent: tuple[Sent, ...] = ()
         self.has_begun = False
+        # How many conditions there were when the callback began.
+        self.begun_at = 0
         # Whether members are as nobody knows when the callback begins.
         self.has_forgotten = False
         self.path: tuple[str, ...] = ()

@@ -364,10 +364,17 @@ def count_trailing_zeros(term: Any) -> int:
 
 def _count_zeros(term: Any, known: dict[int, int]) -> int:
     """The same of a term; known: of its parts, of which many are in it more than once."""
-    number = term.get_id()
+    # A chain of choices, as a table is read, may be longer than functions may call themselves.
+    chain: list[tuple[int, int]] = []
+    while (number := term.get_id()) not in known and term.decl().kind() == z3.Z3_OP_ITE:
+        chain.append((number, _count_zeros(term.arg(1), known)))
+        term = term.arg(2)
     if number not in known:
         known[number] = _count_parts(term, known)
-    return known[number]
+    count = known[number]
+    for number, first in reversed(chain):
+        count = known[number] = min(count, first)
+    return count
 
 
 def _count_parts(term: Any, known: dict[int, int]) -> int:
@@ -379,8 +386,6 @@ def _count_parts(term: Any, known: dict[int, int]) -> int:
         return min(64, sum(_count_zeros(each, known) for each in parts))
     if kind in (z3.Z3_OP_BADD, z3.Z3_OP_BSUB, z3.Z3_OP_BOR, z3.Z3_OP_BXOR, z3.Z3_OP_BNEG):
         return min(_count_zeros(each, known) for each in parts)
-    if kind == z3.Z3_OP_ITE:
-        return min(_count_zeros(parts[1], known), _count_zeros(parts[2], known))
     if kind == z3.Z3_OP_CONCAT:
         count = 0
         for each in reversed(parts):

@@ -70,7 +70,7 @@ HEAD = ("/head", "/head/nod")
             "",
             {HEAD, ("/ears/left", "/ears/left/heard"), ("/ears/right", "/ears/right/heard")},
         ),
-        ("left_ = std::make_shared<Ear>(choose());", "", {HEAD, ("/<Ear>", "/<Ear>/heard")}),
+        ("left_ = std::make_shared<Ear>(choose());", "", {HEAD, ("/ears/<Ear>", "/ears/<Ear>/heard")}),
         # In the namespace of another node, and below its name.
         (
             'inner_ = std::make_shared<rclcpp::Node>("inner", get_namespace());'

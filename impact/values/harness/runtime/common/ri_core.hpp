@@ -611,6 +611,8 @@ template <class T> bool find_parameter(const char *name, T &value) {
 
 template <class T> struct PointedTo { using type = void; };
 template <class T> struct PointedTo<std::shared_ptr<T>> { using type = T; };
+template <class T> struct WatchedBy { using type = void; };
+template <class T> struct WatchedBy<std::weak_ptr<T>> { using type = T; };
 
 template <class T> inline constexpr bool can_give =
     std::is_pointer<T>::value || std::is_default_constructible<T>::value || std::is_constructible<T, std::string>::value ||
@@ -625,6 +627,9 @@ template <class T, class = std::enable_if_t<can_give<T>>> T &give_argument() {
     return made;
   }
   else if constexpr (std::is_same<T, std::string>::value) { static std::string made = "node"; return made; }
+  else if constexpr (!std::is_void<typename WatchedBy<T>::type>::value) {
+    static T made = give_argument<std::shared_ptr<typename WatchedBy<T>::type>>(); return made;
+  }
   else if constexpr (!std::is_void<typename PointedTo<T>::type>::value) {
     using Inner = std::remove_cv_t<typename PointedTo<T>::type>;
     if constexpr (std::is_constructible<Inner, std::string>::value && !std::is_default_constructible<Inner>::value) {
