@@ -3,7 +3,8 @@
 A batch is a set of files benchmarks/batches/NAME.*:
     NAME.repos.txt        the repositories, drawn at random from rosdistro, and applications that it does not list
     NAME.breaks.jsonl     commits that repaired a broken build or dependency, each confirmed by a reader of its diff
-    NAME.releases.jsonl   release trees that the build farm built
+    NAME.releases.jsonl   release trees that the build farm built; with `evidence` "ci": trees of a tag, or the newest
+                          commit, that the repository's own CI builds for the distro
 A batch is scored once before anybody has seen what the tool says about it. That row of the ledger is first sight; it
 is never replaced, and later rows of the same batch are of material that was learned from.
 
