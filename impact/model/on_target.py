@@ -483,6 +483,14 @@ class WorkspaceOnTarget:
         version = self.target.find_version(package)
         return self.providers.has_header(package, path, self.target.distro, version) if version else None
 
+    def may_have_released_header(self, package: str, path: str) -> bool:
+        """The same, or where the tree of the target's release is not known, whether that of the newest which is has."""
+        version = self.target.find_version(package)
+        if not version:
+            return False
+        found = self.has_released_header(package, path)
+        return self.providers.has_kept_header(package, path, self.target.distro, version) if found is None else found
+
     def _find_releases_having(self, path: str, providers: Iterable[Provider]) -> dict[str, bool | None]:
         """The same by the packages among providers that the target has."""
         named = (p.name for p in providers if p.kind == "ros" and self.target.find_version(p.name))

@@ -64,6 +64,8 @@ def find_undeclared(view: TargetView, package: Package) -> Undeclared:
         name = choose_name(view, need)
         if name is None or name == package.name or name in elsewhere:
             continue
+        if need.how == "include" and any(view.may_have_released_header(one, need.subject) for one in declared):
+            continue  # a package of the workspace has it, too: for the other generation, or as a copy
         system = need.providers[0].kind == "system"
         if system and environment and need.how == "import":
             continue
