@@ -1396,9 +1396,9 @@ def test_a_submodule_that_is_not_checked_out_has_packages_that_are_called_after_
     [("docs", "", ["error"]), ("p/third_party", "", []), ("external/audio", "audio", [])],
 )
 def test_own_headers_may_lie_in_a_folder_that_was_not_read(folder, declared, expected, tmp_path):
-    code = '#include "p/lift.h"\nint main() { return 0; }\n'
+    code = '#include "boom/lift.h"\nint main() { return 0; }\n'
     files = {f"p/{name}": text for name, text in ament("add_executable(m m.cpp)", declared, m_cpp=code).items()}
-    files |= {"p/include/p/lift.h": "", ".gitmodules": f'[submodule "s"]\n\tpath = {folder}\n\turl = s.git\n'}
+    files |= {"p/include/boom/lift.h": "", ".gitmodules": f'[submodule "s"]\n\tpath = {folder}\n\turl = s.git\n'}
     rule_cases.write_files(tmp_path, files)
     report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
     assert [finding.severity for finding in report.findings if finding.rule == "unsearched-header"] == expected
