@@ -70,7 +70,8 @@ ENTRY_POINT = re.compile(r"\s*([^=\s][^=]*)=\s*([\w.]+)(?:\s*:\s*([\w.]+))?(?:\s
 # What each command of setuptools calls the folder that it installs programs into.
 _FOLDER_OPTIONS = {"install": "install_scripts", "develop": "script_dir"}
 _GROUPS = ("console_scripts", "gui_scripts")
-SETUP_CALLS = frozenset({"setup", "generate_distutils_setup"})
+_OF_CATKIN = "generate_distutils_setup"
+SETUP_CALLS = frozenset({"setup", _OF_CATKIN})
 
 
 def _setup_py(data: bytes) -> SetupFile:
@@ -94,7 +95,7 @@ class _Reader(Constants):
 
     def __init__(self) -> None:
         super().__init__()
-        self.arguments: dict[str, Any] = {}
+        self.calls: list[dict[str, Any]] = []
         self.unresolved: list[str] = []
         self.namespaces = False
 
@@ -126,8 +127,7 @@ class _Reader(Constants):
         """setup(...), and append or extend of a list that is known."""
         name = format_dotted(call.func)
         if name.rpartition(".")[2] in SETUP_CALLS:
-            for keyword, value in self.find_keywords(call).items():
-                self.arguments.setdefault(keyword, value)
+            self.calls.append(self._find_arguments(call))
         elif isinstance(call.func, ast.Attribute) and call.args and call.func.attr in ("append", "extend"):
             owner = self.find_value(call.func.value)
             if isinstance(owner, list):
@@ -139,22 +139,33 @@ class _Reader(Constants):
         if last in ("find_packages", "find_namespace_packages"):
             self.namespaces = self.namespaces or last == "find_namespace_packages"
             return [TextConstant("*", call.lineno)]
-        return self.find_keywords(call) if last in SETUP_CALLS else super().find_result(call)
+        return self._find_arguments(call) if last in SETUP_CALLS else super().find_result(call)
+
+    def _find_arguments(self, call: ast.Call) -> dict[str, Any]:
+        given = self.find_keywords(call)
+        of_catkin = format_dotted(call.func).rpartition(".")[2] == _OF_CATKIN
+        return {**given, _OF_CATKIN: True} if of_catkin else given
+
+    def _merge_calls(self) -> dict[str, Any]:
+        """What all calls of setup() are given, the first first. Where one of them is catkin's, and another is not, that
+        is for ROS 1, and what it is given is not what ament_python installs."""
+        own = [given for given in self.calls if _OF_CATKIN not in given]
+        return {keyword: value for given in reversed(own or self.calls) for keyword, value in given.items()}
 
     def make_file(self) -> SetupFile:
-        given = self.arguments
+        given = self._merge_calls()
         self.note_unknown("arguments", given.get(MORE))
         directories = given.get("package_dir")
         return SetupFile(
             # Paths of folders do as well as dotted names.
-            tuple(name.strip("/").replace("/", ".") for name in self.list_strings("packages"))
-            + tuple(self.list_strings("py_modules")),
+            tuple(name.strip("/").replace("/", ".") for name in self.list_strings("packages", given.get("packages")))
+            + tuple(self.list_strings("py_modules", given.get("py_modules"))),
             {str(k): str(v) for k, v in directories.items() if isinstance(v, str)}
             if isinstance(directories, dict)
             else {},
             tuple(self.list_entry_points(given.get("entry_points"))),
             tuple(self.list_data_files(given.get("data_files"))),
-            tuple(self.list_strings("scripts")),
+            tuple(self.list_strings("scripts", given.get("scripts"))),
             tuple(
                 Requirement(str(text).strip(), _find_line(text))
                 for text in self.iterate_strings("install_requires", given.get("install_requires"))
@@ -165,9 +176,8 @@ class _Reader(Constants):
             namespaces=self.namespaces,
         )
 
-    def list_strings(self, argument: str) -> list[str]:
-        """A list argument's strings."""
-        value = self.arguments.get(argument)
+    def list_strings(self, argument: str, value: Any) -> list[str]:
+        """The strings of an argument that is a list."""
         return [str(text) for text in self.iterate_strings(argument, value)] if value is not None else []
 
     def iterate_strings(self, argument: str, value: Any) -> Iterator[str]:

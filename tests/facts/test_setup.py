@@ -74,6 +74,15 @@ def test_catkin():
     assert facts.unresolved == ()
 
 
+def test_a_setup_of_both_generations_is_read_as_that_of_ros_2():
+    of_catkin = "\n".join(f"    {line}" for line in CATKIN.splitlines())
+    of_ament = "    from setuptools import setup\n    setup(packages=['walker', 'walker.gait'])"
+    code = f"import os\nif os.environ['ROS_VERSION'] == '1':{of_catkin}\nelse:\n{of_ament}"
+    facts = extract(code.encode(), "setup_py")
+    assert (facts.packages, facts.package_dirs, facts.scripts) == (("walker", "walker.gait"), {}, ())
+    assert facts.unresolved == ()
+
+
 GIVEN = [
     ("setup(packages=find_packages(exclude=['test']))", "packages", ("*",)),
     ("setup(packages=setuptools.find_packages())", "packages", ("*",)),

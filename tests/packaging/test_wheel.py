@@ -15,7 +15,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 ROOMS = ("impact", "corpus", "classifier", "databuild", "edges")
-LIMIT = 42_500_000  # bytes, of which the shipped data are at most 30,000,000
+LIMIT = 43_000_000  # bytes, of which the shipped data are at most 30,000,000
 
 
 def left_behind(folder: str, names: list[str]) -> set[str]:
