@@ -91,6 +91,18 @@ def test_one_answer_for_each_target():
     assert {answer.offers[0].since[:4] for answer in found if answer.as_what == "package"} == {"2022", "2024"}
 
 
+def test_what_is_assumed_of_the_build_farm_is_said(tmp_path):
+    """A version that was given for a machine is there; of what a distro names it is not known whether it was built."""
+    (tmp_path / "rosimpact.toml").write_text('[targets.dock]\ndistro = "jazzy"\nversions = { cv_bridge = "4.2.0" }\n')
+    (tmp_path / "package.xml").write_text(PACKAGE_OF_TWO)
+    notes = {
+        name: [offer.note for answer in find_answers(name, tmp_path, ("dock",)) for offer in answer.offers]
+        for name in ("cv_bridge", "image_geometry")
+    }
+    assert set(notes["cv_bridge"]) == {""}
+    assert set(notes["image_geometry"]) == {"taken to be built for ubuntu noble"}
+
+
 def test_a_package_that_is_gone_says_where_it_was_last():
     (offer,) = find_answers("turtlesim", EXAMPLE, ("jazzy",))[0].offers
     assert offer.kind == "package"

@@ -29,7 +29,8 @@ _PRODUCTS = frozenset(("build", "install", "devel", "log"))
 
 
 class NameOffer(NamedTuple):
-    """One way to get a name. kind: workspace, package, key. version and since may be empty where not known."""
+    """One way to get a name. kind: workspace, package, key. version and since may be empty where not known. note: what
+    else there is to say; of a released package, that the build farm is taken to have built it."""
 
     kind: str
     name: str
@@ -157,13 +158,13 @@ def _offer(view: TargetView, name: str, package: str, symbol: Symbol | None = No
         return NameOffer("workspace", name, here.manifest.version, "", here.path)
     version = target.find_version(name)
     if version is not None and symbol is None:
-        return NameOffer("package", name, version, target.find_first_day(name), "")
+        return NameOffer("package", name, version, target.find_first_day(name), _tell_assumed(view, name))
     if version is not None and symbol is not None:
         found = view.find_availability(symbol)
         if found.is_missing:
             return NameOffer("absent", name, version, "", f"does not have it ({_tell_change(found)})")
         since = find_arrival(symbol.kind, symbol.name, name, target, view.providers)
-        return NameOffer("package", name, version, since, "")
+        return NameOffer("package", name, version, since, _tell_assumed(view, name))
     resolution = target.resolve(name)
     if resolution is not None:
         known = ((library, target.find_library(library)) for library in view.list_libraries(name))
@@ -173,6 +174,10 @@ def _offer(view: TargetView, name: str, package: str, symbol: Symbol | None = No
     last = target.find_last_distro(name)
     note = f"not there; last seen in {last}" if last else f"not there ({package})" if package else "not there"
     return NameOffer("absent", name, "", "", note)
+
+
+def _tell_assumed(view: TargetView, package: str) -> str:
+    return f"taken to be built for {view.target.platform}" if view.target.assumes_built(package) else ""
 
 
 def _calls(use: CMakeUse, name: str) -> bool:

@@ -251,6 +251,11 @@ class DistroTarget:
         released = self._load_packages().get(package)
         return _strip_packaging(released.version) if released else None
 
+    def assumes_built(self, package: str) -> bool:
+        """Whether a package counts as installable here since the distro names it, which says nothing of whether the
+        build farm has built it for the platform: its version is none that was given for this target."""
+        return package not in self._overrides and package in self._load_packages()
+
     @cache_method
     def list_released(self) -> frozenset[str]:
         """All packages released here, overrides included."""
