@@ -248,17 +248,12 @@ def is_right_on(action: FixAction, view: TargetView) -> bool:
 
 
 def _has_header(view: TargetView, path: str) -> bool:
-    target = view.target
     if view.is_standard(path) or view.workspace.provides_header(path):
         return True
-    for provider in view.find_header(path):
-        version = target.find_version(provider.name) if provider.kind == "ros" else None
-        if version and (
-            view.has_released_header(provider.name, path)
-            or view.providers.has_kept_header(provider.name, path, target.distro, version)
-        ):
-            return True
-    return target.platform in view.providers.list_header_platforms(path)
+    released = (provider.name for provider in view.find_header(path) if provider.kind == "ros")
+    if any(view.may_have_released_header(name, path) for name in released):
+        return True
+    return view.target.platform in view.providers.list_header_platforms(path)
 
 
 def measure_coverage(

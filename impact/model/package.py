@@ -979,8 +979,8 @@ class PackageJoin:
                 yield path, tuple(c for c in around[0] if all(c in other for other in around))
 
     def list_unsearched(self, roles) -> Iterator[tuple[IncludeUse, str]]:
-        """As LinkedPackage.unsearched. What is reached by a header alone that may be another one of this path tells
-        nothing."""
+        """As LinkedPackage.unsearched. What is reached only through a header of which another file may be meant does
+        not count."""
         sources = {one for target in self.build.targets for one in target.sources if one in self.cpp}
         surely = set(walk(sources, self._list_searched)) | sources
         for path, (role, public, targets, conditions) in roles.items():

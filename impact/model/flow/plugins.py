@@ -110,7 +110,7 @@ def _list_spawned(workspace: Workspace) -> Iterator[tuple[str, PluginLoad]]:
 
 
 def _read_spawner(arguments: list[str], words: tuple[str, ...]) -> tuple[str, list[str]]:
-    """The namespace that a spawner is told, and the controllers. words: those of which one stands first, if any."""
+    """The namespace that a spawner is given, and the controllers. words: those of which one stands first, if any."""
     space, names = "", []
     option = ""
     for one in arguments:
