@@ -66,6 +66,8 @@ def unknown_header(view: TargetView, package: Package):
                 else:
                     data = {"package": never.package, "replacement": never.alike}
                     yield diagnose(never, at, path, package.name, doubts, kind="misspelt", data={**data})
+            elif view.guess_by_include(path):
+                continue  # undeclared-package names the package that it is of
             elif is_nowhere(view, package, include) and headers.find_loss(package, include) is None:
                 yield Diagnostic(at, path, package.name, {}, "nowhere", doubts)
             continue
