@@ -17,6 +17,7 @@ from ...facts.flow import FlowCall, FlowExpr, FlowFile, Guard
 from ..launch.result import EMPTY, Launched, ShareLine, Started
 from ..launch.text import LaunchText
 from . import nodes as programs_of
+from .called import CalledFunctions
 from .calls import FOREIGN, Calls, FrameworkCall
 from .code import CodeFile, FlowCode, Fn, find_argument, find_parameter, get_tail, list_made
 from .defined import DefinedInterfaces
@@ -148,6 +149,7 @@ class Join:
         self.objects = NodeObjects(self.calls, self.values, ros)
         self.hosts = PluginHosts(self.calls, self.plugins)
         self.triggers = group_pairs(self._list_triggers())
+        self.called = CalledFunctions(self.code)
         # Of a use it is the same in every node that runs it.
         self._qos: dict[int, Qos | None] = {}
         self._asked: dict[int, list[FlowValue]] = {}
@@ -156,6 +158,8 @@ class Join:
         # By the use: who runs it, whether another may share it who runs other functions, on what it rests, and what it
         # is then. Who runs it keeps the ids in the key from being reused.
         self._sites_of: dict[tuple, list[tuple[Running, bool, Work, Site]]] = {}
+        # By the id() of the functions that a node reaches, which are kept for that: those of them that are called.
+        self._called_of: dict[int, tuple[set[Fn], frozenset[Fn]]] = {}
         # Of a function it is the same in all nodes that run the same of what leads to it.
         self._ways: dict[tuple[Fn, frozenset[Fn]], list[CallWay]] = {}
 
@@ -295,6 +299,9 @@ class Join:
         objects = self.objects.list_objects(running.functions, loaded)
         first = [one for one in objects if one.name == running.node.name or use in one.uses]
         first = [one for one in first if one.name == running.node.name] or first
+        if first and not is_open(first[0].name):
+            # Another constructor of their class gives a name that no object has.
+            first = [one for one in first if one.name == first[0].name]
         further = [one for one in objects if one not in first] if first else []
         told = first[0] if len(first) == 1 else None
         if told is not None and not is_open(told.name) and running.node.name:
@@ -865,10 +872,24 @@ class Join:
 
     def _describe_condition(self, use: FrameworkCall, owner: Owner) -> str:
         """On what it depends that a node comes to a call, as Endpoint.only_if has it."""
-        if isinstance(owner, Running) and (use.fn not in owner.functions or not self.code.may_be_called(use.fn)):
+        if isinstance(owner, Running) and not self._is_called(use.fn, owner):
             return f"something calls `{use.fn.name or 'it'}`"
         texts = [guard.text for guard in self.list_guards(use.fn, use.call.guard) if guard.kind == "cpp"]
         return " && ".join((*texts, *self._list_closed(use, owner)))
+
+    def _is_called(self, fn: Fn, running: Running) -> bool:
+        """Whether something that a node runs may call a function."""
+        if fn not in running.functions or not self.code.may_be_called(fn):
+            return False
+        # What another program calls, or finds by name, is not seen from a plugin alone.
+        if running.program.kind not in ("executable", "script", "component") or not running.program.roots:
+            return True
+        known = self._called_of.get(id(running.functions))
+        if known is None:
+            begins = running.program.roots if running.program.kind != "component" else ()
+            called = self.called.find_called(begins, running.functions)
+            known = self._called_of[id(running.functions)] = running.functions, called
+        return fn in known[1]
 
     def _list_closed(self, use: FrameworkCall, owner: Owner) -> Iterator[str]:
         """The conditions around a call that do not hold in a node as far as is known, or of which that is not known
