@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from ....edges.memory import cache_method
+from ...facts.cpp.flow_values import ELEMENTS
 from ...facts.flow import FlowCall, FlowExpr
 from .code import FlowCode, Fn, get_tail
 
@@ -70,7 +71,7 @@ class CalledFunctions:
         code, name = self.code, get_tail(fn.name)
         if fn.is_lambda:
             return code.find_enclosing(fn) is not None
-        if not name.isidentifier() or name == "main" or name[:2] == name[-2:] == "__" or code.is_class_body(fn):
+        if not name.isidentifier() or name == "main" or name in ELEMENTS or name[:2] == name[-2:] == "__" or code.is_class_body(fn):
             return False
         owner = code.find_owner(fn)
         if owner is None:

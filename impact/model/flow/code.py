@@ -12,6 +12,7 @@ from typing import Generic, NamedTuple, TypeVar
 
 from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
+from ...facts.cpp.flow_values import ELEMENTS
 from ...facts.flow import (
     Alias,
     Assignment,
@@ -979,6 +980,8 @@ class FlowCode:
         owner = self.find_owner(fn)
         if owner is None or fn.is_lambda or not name.isidentifier() or name[:2] == name[-2:] == "__":
             return True
+        if name in ELEMENTS:
+            return True  # facts have an element for such a call
         return not self.is_called_by_code(owner) or name in self.mentioned or name == get_tail(owner.name)
 
     @cache_method

@@ -333,7 +333,13 @@ class Join:
         for one in through:
             keys |= self.objects.find_keys(one, running.functions)
         keys = keys or self.objects.find_keys(use, running.functions)
-        return bool(keys & running.objects) or (running.others is not None and not keys & running.others)
+        return self._is_on(keys, running)
+
+    @staticmethod
+    def _is_on(keys: frozenset[str], running: Running) -> bool:
+        """Whether what keys tell is made on a node of a program."""
+        objects, others = running.objects or frozenset(), running.others
+        return bool(keys & objects) or (others is not None and not keys & others)
 
     def find_started(self, launch: Launched) -> tuple[list[Running], list[Unresolved]]:
         """The nodes that a launch starts, under the names it gives them; and the starts that the code does not have."""
@@ -684,7 +690,7 @@ class Join:
             if owners.launched:
                 site = self._adapt_site(site, those[0])
             coming = [owner for owner in those if not self._is_left_out(site.use, owner)]
-            adapted = [(owner, self._adapt_site(site, owner)) for owner in coming]
+            adapted = [(owner, self._select_names_on(self._adapt_site(site, owner), owner)) for owner in coming]
             if not site.implied:
                 # Of nodes that run the same code, one may have a name that is not known.
                 every = ((those[0], site), *adapted)
@@ -844,6 +850,21 @@ class Join:
         known.append((owner, not beside, rests, found))
         return found
 
+    def _select_names_on(self, site: Site, owner: Owner) -> Site:
+        """A site with those of its names that it has on a node, of several that a program is: each node that code is
+        given has what it is given with it."""
+        if not isinstance(owner, Running) or owner.objects is None or site.implied or len(site.names) < 2:
+            return site
+        use, values = site.use, owner.limit_values()
+        ways = self.sites.contexts.list_contexts(use.fn, use.call.guard, values)
+        if len(ways) < 2:
+            return site
+        known = [(self.objects.find_keys_on_way(use, owner.functions, way), way) for way in ways]
+        found = [self.sites.find_names(use, way) for keys, way in known if self._is_on(keys, owner)]
+        names = tuple(dict.fromkeys(name for _, names in found for name in names))
+        same = bool(names) and {prefix for prefix, _ in found} == {site.prefix}
+        return site._replace(names=names) if same and len(found) < len(ways) else site
+
     def _is_written(self, site: Site) -> bool:
         """Whether a site's only name is written where it is made."""
         named = self.calls.find_argument(site.use, site.use.row.topic)
@@ -981,7 +1002,7 @@ class Join:
         for site in statement.sites:
             if self._is_left_out(site.use, owner):
                 continue
-            here = self._adapt_site(site, owner)
+            here = self._select_names_on(self._adapt_site(site, owner), owner)
             for value in here.names:
                 topic, _, reason = self.resolve_name(here, value, owner)
                 for type_ in _select_types(here, owner):
