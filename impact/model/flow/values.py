@@ -300,7 +300,7 @@ class FlowValues:
         for each in fn.facts.assignments:
             if each.line != row.line or each.operator not in ("=", "for"):
                 continue
-            container = (_find_walked(each) if each.guard == guard else None) or find_begun(each.value)
+            container = (find_walked(each) if each.guard == guard else None) or find_begun(each.value)
             measured = _MEASURES.search(row.text) if each.value.kind == "number" else None
             if measured is not None:
                 container = FlowExpr("name", measured[1])
@@ -929,14 +929,14 @@ class FlowValues:
         replaced = elsewhere and self.makers.is_replaced(variable)
         begins = not rows or (fn.source.facts.language == "cpp" and not replaced)
         if not begun and not given and not remade and begins:
-            found.add(_put_under_more(self._evaluate_beginning(variable, fn, seen), left), rank=0)
+            found.add(put_under_more(self._evaluate_beginning(variable, fn, seen), left), rank=0)
         for writer, others in group_pairs(row for row in rows if row[0] is not fn or not line).items():
             if remade and writer is not fn and self.code.is_constructor(writer):
                 continue
             if self.find_makers(writer) is not None and self._is_made_otherwise(writer):
                 continue
             values = self._evaluate_outside(variable, writer, others, filled, origins, seen)
-            found.add(_put_under_more(values, left if self.code.is_class_body(writer) else ""), stays=True)
+            found.add(put_under_more(values, left if self.code.is_class_body(writer) else ""), stays=True)
         here = [(use, values) for use, values in filled if use.fn is fn and use.call.line < line]
         for use, values in filled:
             if not (use.fn is fn and use.call.line < line):
@@ -1875,7 +1875,7 @@ def _begins_turn(each: Assignment, fn: Fn) -> bool:
     return guard.kind == "for" and guard.line == each.line
 
 
-def _find_walked(each: Assignment) -> FlowExpr | None:
+def find_walked(each: Assignment) -> FlowExpr | None:
     """What the loop walks through of which an assignment begins the turns; None for all else."""
     value = each.value
     if value.kind == "index" and len(value.parts) == 2 and value.parts[1] != _EACH:
@@ -1913,7 +1913,7 @@ def spell_condition(kind: str, text: str) -> str:
     return path if (kind == "unless") == bool(found[1]) else f"!{path}"
 
 
-def _put_under_more(values: Iterable[FlowValue], condition: str) -> Iterable[FlowValue]:
+def put_under_more(values: Iterable[FlowValue], condition: str) -> Iterable[FlowValue]:
     """Values that are there under one more condition."""
     return [one._replace(only_if=_join_texts(one.only_if, condition)) for one in values] if condition else values
 
