@@ -914,11 +914,24 @@ class Join:
 
     def _list_closed(self, use: FrameworkCall, owner: Owner) -> Iterator[str]:
         """The conditions around a call that do not hold in a node as far as is known, or of which that is not known
-        though a launch gives what they ask for."""
+        though they ask for what a launch gives."""
         values = owner.limit_values() if isinstance(owner, Running) else self.values
         for guard, decided in reversed(list(values.decide_guards(use.fn, use.call.guard))):
-            if decided.holds is False or (decided.holds is None and decided.is_given):
+            asks_open = decided.asks_open and (guard.kind != "unless" or self._has_other_branch(use.fn, guard))
+            if decided.holds is False or (decided.holds is None and (decided.is_given or asks_open)):
                 yield spell_condition(guard.kind, guard.text)
+
+    @cache_method
+    def _has_other_branch(self, fn: Fn, guard: Guard) -> bool:
+        """Whether something is made where the condition of a guard holds; else that only ends the function, or the
+        program, for a value that is refused."""
+        other = structs.replace(guard, kind="if")
+        made = (use.call.guard for use in self._uses_in.get(fn, ()) if use.row.does in _TRIGGERS)
+        return any(fn.facts.guards[place] == other for one in made for place in fn.list_guards_around(one))
+
+    @cached_property
+    def _uses_in(self) -> dict[Fn, list[FrameworkCall]]:
+        return group_pairs((use.fn, use) for use in self.calls.uses)
 
     def _is_left_out(self, use: FrameworkCall, owner: Owner) -> bool:
         """Whether a node does not come to a call, by what the launch gives that starts it."""

@@ -18,8 +18,6 @@ _ASKING = frozenset(("if", "unless", "case"))
 _PUT = frozenset(("push_back", "emplace_back", "append", "add", "insert"))
 # What was made in an earlier turn is not made again.
 _KNOWN_ALREADY = re.compile(r"\w+ in [\w.]+|[\w.>-]+\.(?:count|contains)\(\w+\)|[\w.>-]+\.find\(\w+\) != [\w.>-]+\.end\(\)")
-# Facts have so much of a source that is not followed.
-_LONGEST = 118
 
 
 class TurnConditions:
@@ -62,7 +60,7 @@ class TurnConditions:
 
     @cache_method
     def list_filters(self, fn: Fn, guard: int) -> tuple[str, ...]:
-        """The conditions under which the lists hold their elements that the loops around a place of a function walk
+        """The conditions under which elements are put into the lists that the loops around a place of a function walk
         through."""
         found: list[str] = []
         for place in fn.list_guards_around(guard):
@@ -74,23 +72,8 @@ class TurnConditions:
     def _list_filters_of(self, walked: FlowExpr, fn: Fn) -> Iterator[str]:
         if walked.kind != "name":
             return
-        variable = self.code.identify(walked.text, fn)
-        for writer, each in self.code.list_writes(variable):
-            if each.value.kind == "other" and each.value.text[:1] in ("[", "(", "{"):
-                yield from self._list_filters_in(each, writer)
         for call in fn.facts.calls:
             head, _, last = call.callee.rpartition(".")
             if last in _PUT and head == walked.text:
                 rows = (fn.facts.guards[place] for place in self.list_asked(fn, call.guard))
                 yield from (spell_condition(row.kind, row.text) for row in rows)
-
-    @staticmethod
-    def _list_filters_in(each: Assignment, fn: Fn) -> Iterator[str]:
-        """The conditions of a comprehension that is assigned."""
-        text, rows = each.value.text, fn.facts.guards
-        for row in rows:
-            inside = row.outer >= 0 and rows[row.outer].kind in (*LOOPS, "if") and rows[row.outer].line >= each.line
-            here = row.text in text or len(text) >= _LONGEST
-            near = each.line <= row.line <= each.line + len(text) // 8
-            if row.kind == "if" and inside and here and near and read_variable_test(row, False) is None:
-                yield row.text

@@ -206,6 +206,10 @@ class _Known(NamedTuple):
     steps: int
 
 
+# How the reason begins why the value of a parameter is not known.
+NO_DEFAULT = "the parameter "
+
+
 class FlowValues:
     """Evaluates expressions in the functions of a body of code."""
 
@@ -484,12 +488,15 @@ class FlowValues:
     def _decide_guard(self, guard: Guard, fn: Fn, seen: tuple) -> DecidedCondition:
         # Who asks a variable for its value is not under the guard yet.
         inner = (*seen, ("asks", fn, guard.line, guard.outer))
+        asks_open = False
 
         def list_known(value: FlowExpr) -> list[tuple[str, How]] | None:
             filling = self._find_filling(value, fn)
             if filling is not None:
                 return [("true", "launch")] if self._is_set(filling, inner) else None
+            nonlocal asks_open
             found = [one for one in self._evaluate(value, fn, guard.line, inner) if not one.uncalled]
+            asks_open = asks_open or any(one.text is None and one.reason.startswith(NO_DEFAULT) for one in found)
             known: list[tuple[str, How]] = [
                 (one.text, one.how)
                 for one in found
@@ -500,7 +507,8 @@ class FlowValues:
         if not seen:
             self._left = _STEPS_A_CONDITION
             self._note_others()
-        return ConditionReader(fn.source.facts.language == "cpp", list_known).decide_guard(guard)
+        decided = ConditionReader(fn.source.facts.language == "cpp", list_known).decide_guard(guard)
+        return decided._replace(asks_open=asks_open and decided.holds is None)
 
     def _find_filling(self, value: FlowExpr, fn: Fn) -> FrameworkCall | None:
         """The use that reads a parameter into a variable, and tells whether it was there; None for all else."""
@@ -571,7 +579,7 @@ class FlowValues:
             found = self._select_at_each(container, index, fn, line, seen)
         if found:
             for one in found:
-                yield from self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value)))
+                yield from put_under_more(self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value))), one.only_if)
         elif index.kind == "number":
             one_of = list(self._evaluate_elements(container, fn, line, seen))
             yield from one_of
@@ -685,7 +693,7 @@ class FlowValues:
         known = known or (self._list_counted(path, fn, line) if path in fn.locals else None)
         if known:
             for one in known:
-                yield from self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value)))
+                yield from put_under_more(self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value))), one.only_if)
             return
         variable = self.code.identify(path, fn)
         if self._is_in(variable, seen):
@@ -693,7 +701,7 @@ class FlowValues:
         known = self.elements.find_field(path, variable, fn, line) if "." in path else None
         if known:
             for one in known:
-                yield from self._evaluate(one.value, one.fn, one.line, (*seen, variable))
+                yield from put_under_more(self._evaluate(one.value, one.fn, one.line, (*seen, variable)), one.only_if)
             return
         is_parsed = "." in path and self.command_line.is_parsed(path, fn)
         if is_parsed:
@@ -1374,7 +1382,7 @@ class FlowValues:
             chosen = self.elements.select(FlowExpr("name", head), value.parts[0], fn, line)
             if chosen:
                 for one in chosen:
-                    yield from self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value)))
+                    yield from put_under_more(self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value))), one.only_if)
                 return
         if python and last == "format" and head and not head.endswith("()") and value.receiver is None:
             yield from self._evaluate_format(value, head, fn, line, seen)
@@ -1660,7 +1668,7 @@ class FlowValues:
                     yielded = True
                     yield one
         if not yielded:
-            reason = f"the parameter `{name}` has no default here" if name else "which parameter it is, is not known"
+            reason = f"{NO_DEFAULT}`{name}` has no default here" if name else "which parameter it is, is not known"
             yield FlowValue(None, "given", reason)
 
     def _select_running(self, uses: list[FrameworkCall]) -> list[FrameworkCall]:
