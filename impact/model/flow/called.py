@@ -71,8 +71,10 @@ class CalledFunctions:
         code, name = self.code, get_tail(fn.name)
         if fn.is_lambda:
             return code.find_enclosing(fn) is not None
-        if not name.isidentifier() or name == "main" or name in ELEMENTS or name[:2] == name[-2:] == "__" or code.is_class_body(fn):
+        if not name.isidentifier() or name[:2] == name[-2:] == "__" or code.is_class_body(fn):
             return False
+        if name == "main" or name in ELEMENTS:
+            return False  # facts have an element for such a call
         owner = code.find_owner(fn)
         if owner is None:
             return not fn.facts.owner

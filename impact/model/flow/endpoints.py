@@ -802,9 +802,9 @@ class Sites:
             if place is None:
                 continue
             given = self.code.list_given(one, place[0], name)
-            return list(dict.fromkeys(
-                body for value, giver in given for body in self.list_bodies(value, giver, use, depth + 1)
-            ))
+            return list(
+                dict.fromkeys(body for value, giver in given for body in self.list_bodies(value, giver, use, depth + 1))
+            )
         return []
 
     def _list_functions(self, name: str, fn: Fn) -> list[Fn]:

@@ -235,11 +235,7 @@ class Join:
         cut: dict[Fn, Fn] = {}
         shut_lines: set[str] = set()
         for fn in running.functions & self._asking.keys() if values.settings else ():
-            closed = {
-                place
-                for place in self._asking[fn]
-                if self._is_shut(running, values, fn, place)
-            }
+            closed = {place for place in self._asking[fn] if self._is_shut(running, values, fn, place)}
             if closed:
                 facts = fn.facts
                 shut = {row for row in range(len(facts.guards)) if not closed.isdisjoint(fn.list_guards_around(row))}
@@ -1074,9 +1070,7 @@ class _Owners:
         self.join, self.running, self.launched = join, running, launched
         self._libraries: dict[str, Node] = {}
         self._used: set[str] = set()
-        self._by_function = group_pairs(
-            (number, one) for one in running for number in one.functions
-        )
+        self._by_function = group_pairs((number, one) for one in running for number in one.functions)
 
     def list_owners(self, use: FrameworkCall, through: Sequence[FrameworkCall] = ()) -> list[Owner]:
         """Who runs a use: nodes that reach it; where no program is seen to, those that are built from its file, else

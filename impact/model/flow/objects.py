@@ -28,8 +28,8 @@ _ITSELF = frozenset(("this", "self", "*this", "shared_from_this", "this.shared_f
 _HANDED = frozenset(("lock", "get"))
 # Pointers that are made of another one, and functions that give what they are given.
 _WRAPS = frozenset(
-    ("shared_ptr", "unique_ptr", "weak_ptr", "move", "static_pointer_cast", "dynamic_pointer_cast", "const_pointer_cast",
-     "static_cast", "dynamic_cast", "ref", "forward", "SharedPtr", "WeakPtr")
+    ("shared_ptr", "unique_ptr", "weak_ptr", "SharedPtr", "WeakPtr", "static_pointer_cast", "dynamic_pointer_cast",
+     "const_pointer_cast", "static_cast", "dynamic_cast", "move", "ref", "forward")
 )  # fmt: skip
 
 
@@ -272,8 +272,9 @@ class _Trace:
         receiver = "" if use.row.does == "publish" else objects.calls.get_receiver(use)
         arguments = [one.parts[0] if one.kind == "keyword" and one.parts else one for one in use.call.arguments]
         given = next((one for one in arguments if objects.calls.is_node(one, use.fn)), None)
+        around = self._code.find_owner(use.fn)
         for value in (FlowExpr("name", receiver) if receiver else None, given):
-            keys = self._follow(value, use.fn, self._code.find_owner(use.fn), frozenset()) if value is not None else set()
+            keys = self._follow(value, use.fn, around, frozenset()) if value is not None else set()
             if keys:
                 return keys
         return objects.find_own_key(use.fn)

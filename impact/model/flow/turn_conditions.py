@@ -1,5 +1,5 @@
-"""Conditions that are asked anew in each turn of a loop, or of each element of a list: where they are not decided, it is
-not known for which of the elements something is made."""
+"""Conditions that are asked anew in each turn of a loop, or of each element of a list: where they are not decided, it
+is not known for which of the elements something is made."""
 
 from __future__ import annotations
 
@@ -15,9 +15,11 @@ from .variable_tests import read_variable_test
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _ASKING = frozenset(("if", "unless", "case"))
-_PUT = frozenset(("push_back", "emplace_back", "append", "add", "insert"))
-# What was made in an earlier turn is not made again.
-_KNOWN_ALREADY = re.compile(r"\w+ in [\w.]+|[\w.>-]+\.(?:count|contains)\(\w+\)|[\w.>-]+\.find\(\w+\) != [\w.>-]+\.end\(\)")
+_PUT = frozenset(("push_back", "emplace_back", "append", "add", "insert", "emplace"))
+# Whether something is among others.
+_IS_AMONG = re.compile(
+    r"\w+ in ([\w.]+)|([\w.>-]+)\.(?:count|contains)\(\w+\)|([\w.>-]+)\.find\(\w+\) != [\w.>-]+\.end\(\)"
+)
 
 
 class TurnConditions:
@@ -28,21 +30,33 @@ class TurnConditions:
 
     @cache_method
     def list_asked(self, fn: Fn, guard: int) -> tuple[int, ...]:
-        """The guards, by their places, around a place of a function that ask for the variable of a loop around them; but
-        for those that ask for it alone, which values are held against."""
+        """The guards, by their places, around a place of a function that ask for the variable of a loop around them;
+        but for those that ask for it alone, which values are held against."""
         found: list[int] = []
         around = fn.list_guards_around(guard)
         for place in around:
             row = fn.facts.guards[place]
             if row.kind not in _ASKING or read_variable_test(row, fn.source.facts.language == "cpp") is not None:
                 continue
-            if row.kind == "unless" and _KNOWN_ALREADY.fullmatch(row.text.strip()):
+            if row.kind == "unless" and self._is_kept_meanwhile(row.text, fn):
                 continue
             words = set(_WORD.findall(row.text))
             loops = [one for one in fn.list_guards_around(place) if fn.facts.guards[one].kind in LOOPS]
             if any(not words.isdisjoint(self._list_variables(fn, loop)) for loop in loops):
                 found.append(place)
         return tuple(found)
+
+    @staticmethod
+    def _is_kept_meanwhile(text: str, fn: Fn) -> bool:
+        """Whether a condition is that something is among what a function itself keeps: made in an earlier turn, it is
+        not made again."""
+        found = _IS_AMONG.fullmatch(text.strip())
+        if found is None:
+            return False
+        path = re.sub(r"^self\.", "this.", next(filter(None, found.groups())).replace("->", "."))
+        targets = {each.target for each in fn.facts.assignments} | {call.target for call in fn.facts.calls}
+        puts = {f"{path}.{put}" for put in _PUT}
+        return f"{path}.[]" in targets or any(call.callee in puts for call in fn.facts.calls)
 
     @cache_method
     def _list_variables(self, fn: Fn, loop: int) -> frozenset[str]:

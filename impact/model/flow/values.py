@@ -579,7 +579,9 @@ class FlowValues:
             found = self._select_at_each(container, index, fn, line, seen)
         if found:
             for one in found:
-                yield from put_under_more(self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value))), one.only_if)
+                yield from put_under_more(
+                    self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value))), one.only_if
+                )
         elif index.kind == "number":
             one_of = list(self._evaluate_elements(container, fn, line, seen))
             yield from one_of
@@ -588,6 +590,10 @@ class FlowValues:
                 yield FlowValue(None, "unresolved", reason, beside=True)
         else:
             yield from self._evaluate_elements(container, fn, line, seen)
+
+    def _evaluate_listed(self, one: ListElement, seen: tuple) -> Iterable[FlowValue]:
+        """What an element of a list is worth, under the condition under which it is there."""
+        return put_under_more(self._evaluate(one.value, one.fn, one.line, seen), one.only_if)
 
     def _evaluate_count(self, container: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         """The number of a turn, as `enumerate` counts."""
@@ -693,7 +699,9 @@ class FlowValues:
         known = known or (self._list_counted(path, fn, line) if path in fn.locals else None)
         if known:
             for one in known:
-                yield from put_under_more(self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value))), one.only_if)
+                yield from put_under_more(
+                    self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value))), one.only_if
+                )
             return
         variable = self.code.identify(path, fn)
         if self._is_in(variable, seen):
@@ -701,7 +709,7 @@ class FlowValues:
         known = self.elements.find_field(path, variable, fn, line) if "." in path else None
         if known:
             for one in known:
-                yield from put_under_more(self._evaluate(one.value, one.fn, one.line, (*seen, variable)), one.only_if)
+                yield from self._evaluate_listed(one, (*seen, variable))
             return
         is_parsed = "." in path and self.command_line.is_parsed(path, fn)
         if is_parsed:
@@ -1382,7 +1390,9 @@ class FlowValues:
             chosen = self.elements.select(FlowExpr("name", head), value.parts[0], fn, line)
             if chosen:
                 for one in chosen:
-                    yield from put_under_more(self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value))), one.only_if)
+                    yield from put_under_more(
+                        self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value))), one.only_if
+                    )
                 return
         if python and last == "format" and head and not head.endswith("()") and value.receiver is None:
             yield from self._evaluate_format(value, head, fn, line, seen)
