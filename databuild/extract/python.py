@@ -88,6 +88,8 @@ class _Module:
             elif isinstance(node, ast.ImportFrom):
                 for alias in node.names:
                     name, module = alias.asname or alias.name, node.module or ""
+                    if name == "__getattr__":
+                        self.open.append((scope, "__getattr__"))
                     self.imports.append(
                         ImportedName(name, module, node.level, alias.name, node.lineno, scope, conditions)
                     )
@@ -192,6 +194,9 @@ class _Module:
         stack: list[ast.AST] = list(reversed(node.body))
         while stack:
             at = stack.pop()
+            late = (*conditions, LATE)
+            self.names += (Bound(name, "attribute", getattr(at, "lineno", node.lineno), conditions=late)
+                           for name in _iterate_bound(at) if name in outside)  # fmt: skip
             if isinstance(at, ast.Global):
                 outside.update(at.names)
             elif isinstance(at, (ast.Assign, ast.AnnAssign, ast.AugAssign)):
@@ -208,7 +213,6 @@ class _Module:
                     elif isinstance(target, ast.Name) and of_module:
                         self.modules.add(target.id)
                     elif isinstance(target, ast.Name) and target.id in outside:
-                        late = (*conditions, LATE)
                         self.names.append(Bound(target.id, "attribute", at.lineno, conditions=late))
             elif isinstance(at, ast.Call):
                 self.visit_late_call(at, scope, me)
@@ -228,6 +232,8 @@ class _Module:
                 deprecated=_find_deprecation(node.decorator_list), conditions=conditions,
             )
         )  # fmt: skip
+        if node.name == "__getattr__":
+            self.open.append((scope, "__getattr__"))
         for meta in metaclass:
             if meta.rpartition(".")[2] not in ("ABCMeta", "EnumMeta", "type"):
                 self.open.append((name, f"metaclass {meta}"))
@@ -249,6 +255,8 @@ class _Module:
             text = _format_literal(value)
             if isinstance(value, ast.Subscript) and _format_dotted(value.value) == "sys.modules":
                 self.modules.add(target.id)
+            if target.id == "__getattr__":
+                self.open.append((scope, "__getattr__"))
             self.names.append(Bound(name, "attribute", target.lineno, (), annotation, text, conditions=conditions))
             if value is not None:
                 self.visit_call_statement(value, scope)
@@ -370,6 +378,20 @@ class _Module:
 
 
 _INSIDE = (ast.stmt, ast.ExceptHandler, ast.Call, ast.withitem, ast.match_case)
+
+
+def _iterate_bound(node: ast.AST) -> Iterator[str]:
+    """The names that a statement binds otherwise than by an assignment."""
+    targets: list[ast.expr] = []
+    if isinstance(node, (ast.Import, ast.ImportFrom)):
+        yield from (alias.asname or alias.name.partition(".")[0] for alias in node.names)
+    elif isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+        yield node.name
+    elif isinstance(node, (ast.For, ast.AsyncFor)):
+        targets = [node.target]
+    elif isinstance(node, ast.withitem) and node.optional_vars is not None:
+        targets = [node.optional_vars]
+    yield from (target.id for target in _flatten_targets(targets) if isinstance(target, ast.Name))
 
 
 def _flatten_targets(targets: Iterable[ast.expr]) -> Iterator[ast.expr]:
