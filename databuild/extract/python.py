@@ -185,6 +185,17 @@ class _Module:
             warning = "deprecated" if name in found.warned else ""
             self.names.append(Bound(name, "attribute", node.lineno, deprecated=warning, conditions=conditions))
 
+    def add_members_served(self, place: int, conditions: tuple[Condition, ...]) -> None:
+        """What a class that a decorator makes the module's `__getattr__` of serves: its members. place: where it stands
+        among the names."""
+        head = "__getattr__."
+        if any(scope == "__getattr__" for scope, _ in self.open):
+            self.open.append(("", "__getattr__"))
+        for bound in self.names[place:]:
+            if bound.name.startswith(head) and bound.name.count(".") == 1:
+                served = msgspec.structs.replace(bound, name=bound.name[len(head) :], kind="attribute", parameters=())
+                self.names.append(msgspec.structs.replace(served, conditions=conditions))
+
     def visit_function_body(self, node, scope: str, conditions: tuple[Condition, ...]) -> None:
         """What a function binds outside of itself: attributes of `self`, names that it declares global."""
         first = [*node.args.posonlyargs, *node.args.args][:1]
@@ -232,12 +243,12 @@ class _Module:
                 deprecated=_find_deprecation(node.decorator_list), conditions=conditions,
             )
         )  # fmt: skip
-        if node.name == "__getattr__":
-            self.open.append((scope, "__getattr__"))
         for meta in metaclass:
             if meta.rpartition(".")[2] not in ("ABCMeta", "EnumMeta", "type"):
                 self.open.append((name, f"metaclass {meta}"))
         self.visit_block(node.body, name, ())
+        if name == "__getattr__":
+            self.add_members_served(place, conditions)
         made = [bound.deprecated for bound in self.names[place:] if bound.name == f"{name}.__init__"]
         if any(made) and not self.names[place].deprecated:
             deprecated = next(filter(None, made))

@@ -54,6 +54,9 @@ def shown(parameter):
         ("def f():\n  global a, b, C, d\n  for a in x: pass\n  with x as (b, c): pass\n  class C: ...\n  def d(): ...",
          [("f", "function"), *((name, "attribute") for name in "abCd")]),
         ("globals()['a'] = 1", [("a", "attribute")]),
+        ("@make\nclass __getattr__:\n  late = warn(3)\n  @property\n  def soon(self): ...",
+         [("__getattr__", "class"), ("__getattr__.late", "attribute"), ("__getattr__.soon", "property"),
+          ("late", "attribute"), ("soon", "attribute")]),
     ],
 )  # fmt: skip
 def test_names_that_are_bound(text, expected):
@@ -200,7 +203,11 @@ def test_what_a_module_getattr_serves(body, served):
         ("def __getattr__(name): pass", [("", "__getattr__")]),
         ("__getattr__, *rest = serve(x)", [("", "__getattr__")]),
         ("from x import serve as __getattr__", [("", "__getattr__")]),
-        ("@make\nclass __getattr__: pass", [("", "__getattr__")]),
+        (
+            "@make\nclass __getattr__:\n  locals().update(x)",
+            [("__getattr__", "locals().update()"), ("", "__getattr__")],
+        ),
+        ("@make\nclass __getattr__:\n  late = warn(lambda self: 1)", []),
         ("class A:\n  def __getattr__(self, n): pass", [("A", "__getattr__")]),
         ("globals().update(x)", [("", "globals().update()")]),
         ("globals()[n] = 1", [("", "globals()[...]")]),
