@@ -389,7 +389,7 @@ def read_versions(
 
         firsts = sorted(minors.values())
         gaps = [(one, two, [key for key in firsts if one < key < two]) for one, two in pairwise(get_all(ends))]
-        while gaps := [(one, two, keys) for one, two, keys in gaps if keys and _loses(get(one), get(two))]:
+        while gaps := [(one, two, keys) for one, two, keys in gaps if keys and _has_losses(get(one), get(two))]:
             found = set(get_all(keys[len(keys) // 2] for _, _, keys in gaps))
             left = []
             for one, two, keys in gaps:
@@ -403,7 +403,7 @@ def read_versions(
     return [found for _, found in sorted(read.items()) if found is not None]
 
 
-def _loses(before: OfferedNames | None, after: OfferedNames | None) -> bool:
+def _has_losses(before: OfferedNames | None, after: OfferedNames | None) -> bool:
     return before is not None and after is not None and any(_iterate_losses(before, after))
 
 
