@@ -220,7 +220,10 @@ def read_wheel(file: Path, version: str) -> PyPIRelease:
                 else:
                     data = _prepare_stub(data)
                 kept = modules if ending == "py" else stubs
-                kept[name] = InstalledModule(name, "", stem == "__init__", _strip_surface(extract(data)))
+                facts = _strip_surface(extract(data))
+                if ending == "py" and b"attach_stub(" in data and f"{path}i" in archive.NameToInfo:
+                    facts = _add_served(facts, extract(archive.read(f"{path}i")))
+                kept[name] = InstalledModule(name, "", stem == "__init__", facts)
     return PyPIRelease(version, tuple(modules.values()), tuple(stubs.values()),
                    tuple(sorted(native - modules.keys())), tuple(sorted(refused)),
                    "\n".join(sorted(word.decode() for word in words)) + "\n" if stubs else "")  # fmt: skip
@@ -244,6 +247,14 @@ def _strip_surface(surface: ModuleSurface) -> ModuleSurface:
     names = (replace(one, line=0, parameters=(), value="", annotation="") for one in surface.names
              if one.kind not in ("method", "property", "instance"))  # fmt: skip
     return replace(surface, names=tuple(names), problems=())
+
+
+def _add_served(module: ModuleSurface, stub: ModuleSurface) -> ModuleSurface:
+    """A module whose `__getattr__` is that of lazy_loader.attach_stub() (SPEC 1 of scientific-python.org), which serves
+    what the stub beside it imports from its own package."""
+    served = tuple(taken for taken in stub.imports if taken.level == 1)
+    left = tuple(one for one in module.open if one != ("", "__getattr__"))
+    return msgspec.structs.replace(module, imports=(*module.imports, *served), open=left)
 
 
 def _list_refused(data: bytes, load: Callable[[str], bytes]) -> frozenset[str]:

@@ -72,6 +72,11 @@ def __getattr__(name):
         ({INIT: "move = 1"}, {INIT: "", "arm/_own.py": "import arm\narm.move = 2"}, {}),
         ({INIT: "def move(): ..."}, {INIT: "__all__ = ['move']"}, {}),
         ({INIT: "def move(): ..."}, {INIT: "__getattr__, *_ = serve(__name__)"}, {}),
+        # lazy_loader serves what the stub imports from the package, and that alone.
+        ({INIT: "def move(): ...\ndef turn(): ..."},
+         {INIT: "import lazy_loader as lazy\n__getattr__, *_ = lazy.attach_stub(__name__, __file__)",
+          STUB: "from .way import move", "arm/way.py": "def move(): ...\ndef turn(): ..."},
+         {"arm.turn": ("1.1", "")}),
         ({INIT: "def move(): ..."}, {INIT: "def load():\n    global move\n    from fast import move"}, {}),
         # `__getattr__` lists what it raises for, here or in a module beside it.
         ({INIT: "MOVE = 1"}, {INIT: REFUSES.format(table="GONE = {'MOVE': 'use go'}\nfrom elsewhere import *")},
