@@ -53,7 +53,7 @@ from .names import (
     resolve_ros2_name,
 )
 from .nodes import BuiltPackage, CodeReach, StartableProgram
-from .objects import NodeObjects, make_key
+from .objects import NodeObject, NodeObjects, make_key
 from .outside import list_outside
 from .plugin_hosts import PluginHosts, select_own
 from .qos import apply_overrides, find_qos, list_overridable
@@ -182,7 +182,7 @@ class Join:
             named = [use for use in self.calls.select_uses("node") if use.fn in functions]
             node, use = self._make_node(program, named, self.values.run(functions))
             one = Running(program, node, functions, classes, self.values)
-            several = program.kind in ("executable", "script", "component")
+            several = program.kind in ("executable", "script", "component", "plugin")
             found += self._split_by_object(one, use) if several else [one]
         return found
 
@@ -293,6 +293,10 @@ class Join:
         by itself, and talks in its own name. use: that names the first."""
         loaded = next(map(self.code.find_owner, running.program.roots), None) if running.program.plugin else None
         objects = self.objects.list_objects(running.functions, loaded)
+        if running.program.kind == "plugin":
+            is_node = loaded is None or self.objects.is_node(loaded)
+            yield from [running] if is_node or running.node.name else self._split_from_plugin(running, objects)
+            return
         first = [one for one in objects if one.name == running.node.name or use in one.uses]
         first = [one for one in first if one.name == running.node.name] or first
         if first and not is_open(first[0].name):
@@ -318,6 +322,18 @@ class Join:
             node = structs.replace(running.node, id=f"{running.node.id}{one.name}", name=one.name)
             yield running._replace(
                 node=node, objects=one.keys - shared, values=one.values, fixed=one.fixed, remaps=one.remaps
+            )
+
+    @staticmethod
+    def _split_from_plugin(running: Running, objects: Sequence[NodeObject]) -> Iterator[Running]:
+        """A plugin that is no node, and the nodes that it makes, as far as their names are known."""
+        named = [one for one in objects if not is_open(one.name)]
+        made = frozenset().union(*(one.keys for one in named))
+        yield running._replace(objects=frozenset(), others=made) if named else running
+        for one in named:
+            node = structs.replace(running.node, id=f"{running.node.id}{one.name}", name=one.name)
+            yield running._replace(
+                node=node, objects=one.keys, values=one.values, fixed=one.fixed, remaps=one.remaps
             )
 
     def runs(self, running: Running, use: FrameworkCall, through: Sequence[FrameworkCall] = ()) -> bool:
