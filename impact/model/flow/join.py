@@ -332,9 +332,7 @@ class Join:
         yield running._replace(objects=frozenset(), others=made) if named else running
         for one in named:
             node = structs.replace(running.node, id=f"{running.node.id}{one.name}", name=one.name)
-            yield running._replace(
-                node=node, objects=one.keys, values=one.values, fixed=one.fixed, remaps=one.remaps
-            )
+            yield running._replace(node=node, objects=one.keys, values=one.values, fixed=one.fixed, remaps=one.remaps)
 
     def runs(self, running: Running, use: FrameworkCall, through: Sequence[FrameworkCall] = ()) -> bool:
         """Whether a node runs a use in one of its functions. through: the uses that make what it is called on, where it

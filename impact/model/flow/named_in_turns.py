@@ -89,7 +89,11 @@ class NamesInTurns:
         self._is_asked = True
         try:
             for fn, call in self._code.list_calls_named(("setattr",)):
-                if call.callee != "setattr" or len(call.arguments) != 3 or call.arguments[0] != FlowExpr("name", "this"):
+                if (
+                    call.callee != "setattr"
+                    or len(call.arguments) != 3
+                    or call.arguments[0] != FlowExpr("name", "this")
+                ):
                     continue
                 for values, text, only_if in self._list_named(call.arguments[1], fn, call):
                     each = Assignment(f"this.{text}", call.arguments[2], call.line, call.guard)

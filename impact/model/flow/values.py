@@ -1754,7 +1754,9 @@ class FlowValues:
                     yield one
         if not yielded and any(map(self._is_typed_alone, (Declaration(use), *others))):
             # It has another value than what stands where it is missing.
-            yield FlowValue(None, "unresolved", f"{NO_DEFAULT}`{name}` is declared without a value: it is given at start")
+            yield FlowValue(
+                None, "unresolved", f"{NO_DEFAULT}`{name}` is declared without a value: it is given at start"
+            )
         elif not yielded:
             reason = f"{NO_DEFAULT}`{name}` has no default here" if name else "which parameter it is, is not known"
             yield FlowValue(None, "given", reason)
@@ -1769,6 +1771,11 @@ class FlowValues:
         one."""
         values = self._limit_to_way(one.turns, one.way)
         values._left = self._left
+        given = self.calls.find_argument(one.use, one.use.row.default) if one.use.row.default else None
+        if given is not None and given.kind == "name":
+            # The variable that asks may be the one that had the default before.
+            variable = self.code.identify(given.text, one.use.fn)
+            seen = self._leave_out(variable, seen) if variable.kind == "local" else seen
         yield from values._evaluate_named(one.use, name, seen)
         self._left = values._left
 
