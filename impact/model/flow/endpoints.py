@@ -294,7 +294,7 @@ class Sites:
         inside = values.limit_to_class(use.fn)
         spaces, names = self._list_spaces(use, inside), self._list_written_names(use, inside)
         several = len(spaces) > 1 or len(names) > 1 or any(one.reason == WHICH_TURN for one in names)
-        if several or (names[0].text is not None and self._has_turns(use, values)):
+        if several or (any(one.text is not None for one in names) and self._has_turns(use, values)):
             ways = self.contexts.list_contexts(use.fn, use.call.guard, values)
             if len(ways) > 1:
                 rows = [(self._list_spaces(use, way), self._list_written_names(use, way)) for way in ways]

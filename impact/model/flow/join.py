@@ -194,10 +194,34 @@ class Join:
             functions, classes = self.reach.find_reached(program.roots, (), others, cut)
             if not program.roots:
                 functions = {fn for fn in self.code.functions if fn.source.path in program.files}
-            return functions, classes
+            return functions | self._find_imported(functions), classes
         named = self.code.classes.get(get_tail(program.plugin), ())
         cls = next((one for one in named if one.source.path == program.path), None)
         return self.reach.find_reached(program.roots, [cls] if cls is not None else [], cut=cut)
+
+    def _find_imported(self, functions: set[Fn]) -> set[Fn]:
+        """The bodies of modules of Python that make endpoints where what runs imports them, by itself or through other
+        modules."""
+        if not self._making_bodies:
+            return set()
+        queue = list({fn.source.path: fn.source for fn in functions if fn.source.facts.language == "python"}.values())
+        seen = {source.path for source in queue}
+        while queue:
+            for module in self.code.modules.list_imported(queue.pop()):
+                if module.path not in seen:
+                    seen.add(module.path)
+                    queue.append(module)
+        return {fn for path in seen for fn in self._making_bodies.get(path, ())} - functions
+
+    @cached_property
+    def _making_bodies(self) -> dict[str, list[Fn]]:
+        """The bodies of modules of Python that make endpoints, by file, without those of programs: what names a node,
+        or does something only where it is started itself."""
+        uses = [site.use for site in self.sites.endpoints if not site.implied and not site.use.fn.name]
+        bodies = dict.fromkeys(use.fn for use in uses if use.fn.source.facts.language == "python")
+        naming = {use.fn for use in self.calls.select_uses("node")}
+        kept = (fn for fn in bodies if not any("__name__" in guard.text for guard in fn.facts.guards))
+        return group_pairs((fn.source.path, fn) for fn in kept if fn not in naming)
 
     def _leave_out_nodes(
         self, program: StartableProgram, functions: set[Fn], classes: set[str]

@@ -18,8 +18,8 @@ _ASKING = frozenset(("if", "unless", "case"))
 
 
 class Declaration(NamedTuple):
-    """A use that declares a parameter, or reads it with a default. turns, way: the turns of loops, by the place of their
-    function and their line, and the calls of functions in which it is about this parameter."""
+    """A use that declares a parameter, or reads it with a default. turns, way: the turns of loops, by the place of
+    their function and their line, and the calls of functions in which it is about this parameter."""
 
     use: FrameworkCall
     turns: Mapping[tuple[str, int], int] = {}
@@ -27,8 +27,8 @@ class Declaration(NamedTuple):
 
 
 class SetMember(NamedTuple):
-    """A call of `setattr` that sets a member, as the assignment that it is. turns, way: as for Declaration; only_if: the
-    condition on what the name is put together from under which it is come to."""
+    """A call of `setattr` that sets a member, as the assignment that it is. turns, way: as for Declaration; only_if:
+    the condition in the loops around under which it is come to, where that is not known."""
 
     fn: Fn
     each: Assignment
@@ -132,8 +132,8 @@ class NamesInTurns:
                 yield row, decided
 
     def _list_ways(self, fn: Fn, guard: int) -> list[Any]:
-        """What evaluates expressions on each way to a place of a function: in each turn of the loops around, and through
-        each call of it where it is given something. None where there are too many."""
+        """What evaluates expressions on each way to a place of a function: in each turn of the loops around, and
+        through each call of it where it is given something. None where there are too many."""
         begun = self._begin()
         callers = self._code.callers.get(fn, ()) if fn.facts.parameters and not self._code.is_constructor(fn) else ()
         found: list[Any] = []

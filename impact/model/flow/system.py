@@ -47,7 +47,11 @@ def merge_launches(code: Graph, launches: Sequence[Launch]) -> Graph:
     programs = {start.program for launch in launches for start in launch.starts}
     possible = [(launch.path, launch.possible) for launch in launches if launch.possible is not None]
     programs |= {_get_program(node) for _, graph in possible for node in graph.nodes}
-    started = {node.id for node in code.nodes if node.kind != "library" and _get_program(node) in programs}
+    started = {
+        node.id
+        for node in code.nodes
+        if node.kind != "library" and _get_program(node) in programs
+    }
     sure = [(launch.path, launch.graph) for launch in launches]
     graphs = [graph for _, graph in (*sure, *possible)]
 
@@ -62,7 +66,9 @@ def merge_launches(code: Graph, launches: Sequence[Launch]) -> Graph:
         for node in graph.nodes
     }
     nodes |= {node.id: node for node in code.nodes if node.id not in started}
-    lost = _drop_repeats(one for graph in graphs for one in graph.coverage.unresolved if one.what == LOST_INCLUDE)
+    lost = _drop_repeats(
+        one for graph in graphs for one in graph.coverage.unresolved if one.what == LOST_INCLUDE
+    )
     return msgspec.structs.replace(
         code,
         coverage=msgspec.structs.replace(code.coverage, unresolved=(*code.coverage.unresolved, *lost)),

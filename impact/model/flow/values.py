@@ -1458,6 +1458,11 @@ class FlowValues:
                 for one in chosen:
                     yield from self._evaluate_listed(one, (*seen, ("element", one.value)))
                 return
+            if python and last == "get" and len(value.parts) == 2 and not head.endswith("()"):
+                # What a file holds that the program reads is not known; this is there where it lacks the key.
+                yield from self._evaluate(value.parts[1], fn, line, seen)
+                yield FlowValue(None, "unresolved", f"what `{value.text}` gives is not known", beside=True)
+                return
         if python and last == "format" and head and not head.endswith("()") and value.receiver is None:
             yield from self._evaluate_format(value, head, fn, line, seen)
             return

@@ -202,7 +202,9 @@ def test_an_argument_that_is_passed_is_sure_whoever_may_have_declared_it(tmp_pat
     passed = "IncludeLaunchDescription([ThisLaunchFileDir(), '/c.launch.py'], launch_arguments={'ns': 'q'}.items())"
     declared = "DeclareLaunchArgument('ns', default_value='{}')"
     started = "Node(package='talk', executable='talker', name=LaunchConfiguration('ns'))"
-    found = start(tmp_path, f"{INCLUDED}, {passed}", b=declared.format("r"), c=f"{declared.format('s')}, {started}")
+    found = start(
+        tmp_path, f"{INCLUDED}, {passed}", b=declared.format("r"), c=f"{declared.format('s')}, {started}"
+    )
     assert [node.name for node in found.nodes] == ["/q"]
 
 

@@ -93,7 +93,6 @@ HELPER = """
     int main(int c, char ** v) {{ rclcpp::init(c, v); rclcpp::spin(std::make_shared<Board>()); }}
 """
 
-
 @pytest.mark.parametrize(
     ("name", "default", "expected"),
     [

@@ -43,7 +43,9 @@ def test_a_call_whose_name_one_program_leaves_open_is_not_resolved():
 
 
 def test_an_object_that_is_made_with_an_element_is_no_function():
-    assert ends(graph(make_programs(first="names[1]")), "publisher") == {("pier/first", "/one/light", "std_msgs/Empty")}
+    assert ends(graph(make_programs(first="names[1]")), "publisher") == {
+        ("pier/first", "/one/light", "std_msgs/Empty")
+    }
     # A function that is declared makes nothing.
     main = MAIN.replace("GIVEN", '"/a"').replace("Lamp lamp(node", "int lamp(int [3], Lamp);\n      Lamp(node")
     code = joined({"pier/src/lamp.hpp": CLASS, "pier/src/first.cpp": main})

@@ -1,4 +1,4 @@
-"""Parameters that loops declare, and members that they set, under names that are put together: each turn has its own."""
+"""Parameters that loops declare, and members that they set, under names that are put together in each turn."""
 
 import pytest
 from joining import graph, graph_on_disk, manifest
@@ -121,7 +121,8 @@ ALL = {("/f", "default", ""), ("/l", "default", ""), ("/r", "default", "")}
     (CAMERAS + "for name, topic in cameras:\n    self.declare_parameter(name + '.topic', topic)\n"
      + READ + PUB.format("topic"), ALL),
     # One is declared by itself.
-    ("cameras = [('front', 0), ('left', 0)]\nself.declare_parameter('front.topic', '/f')\n" + READ + PUB.format("topic"),
+    ("cameras = [('front', 0), ('left', 0)]\nself.declare_parameter('front.topic', '/f')\n"
+     + READ + PUB.format("topic"),
      {("/f", "default", ""), ("?", "", "")}),
     # Each in its turn.
     (CAMERAS + DECLARE + READ + PUB.format("name + topic"),

@@ -28,7 +28,8 @@ PUB = 'pub_ = node_->create_publisher<std_msgs::msg::Bool>("{}", 1);'
     ('if (!node_) { node_ = rclcpp::Node::make_shared("aux"); }' + PUB.format("state"), {("/aux", "/state")}),
     ('node_ = std::make_shared<rclcpp::Node>("aux", "arm");' + PUB.format("state"), {("/arm/aux", "/arm/state")}),
     ('node_ = std::make_shared<rclcpp::Node>("aux");\nother_ = std::make_shared<rclcpp::Node>("more");'
-     + PUB.format("~/a") + PUB.format("~/b").replace("node_->", "other_->"), {("/aux", "/aux/a"), ("/more", "/more/b")}),
+     + PUB.format("~/a") + PUB.format("~/b").replace("node_->", "other_->"),
+     {("/aux", "/aux/a"), ("/more", "/more/b")}),
     # Of a name that is not known it is as before.
     ("node_ = std::make_shared<rclcpp::Node>(ask());" + PUB.format("~/state"), {("", "/<Board>/state")}),
 ])  # fmt: skip

@@ -220,7 +220,7 @@ from std_msgs.msg import Empty
 class A(Node):
     def __init__(self):
         super().__init__("a")
-{indent(body, " " * 8)}
+{indent(body, ' ' * 8)}
         self.pub = self.create_publisher(Empty, "go", QoSProfile(depth=depth))
 A()
 """

@@ -47,7 +47,9 @@ FILES = {
     "pier/launch/tide.launch.xml": LAUNCH.replace("NAME", "tide").replace(
         "MORE", '<param from="$(find-pkg-share pier)/config/tide.yaml"/>'
     ),
-    "pier/launch/watch.launch.xml": LAUNCH.replace("NAME", "watch").replace("MORE", '<remap from="level" to="level"/>'),
+    "pier/launch/watch.launch.xml": LAUNCH.replace("NAME", "watch").replace(
+        "MORE", '<remap from="level" to="level"/>'
+    ),
     "pier/config/tide.yaml": "/**:\n  ros__parameters:\n    out: level\n",
 }
 SYSTEMS = {"dock": SystemSetting(("tide.launch.xml", "watch.launch.xml side:=south"), {"side": "south"})}

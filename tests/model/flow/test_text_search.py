@@ -17,7 +17,7 @@ NODE = """
 """
 CASES = [
     ('create_publisher<std_msgs::msg::Empty>("a", 1);', []),
-    ("create_publisher<std_msgs::msg::Empty>(find(), 1);", []),  # that is not resolved, and told beside it
+    ('create_publisher<std_msgs::msg::Empty>(find(), 1);', []),  # that is not resolved, and told beside it
     ('declare_parameter("a", 1);', []),
     ('// thing.advertise("a");', []),
     ('auto text = "thing.advertise(a)";', []),
