@@ -6,7 +6,7 @@ What belongs to which node, and what its names become there, is told by nodes.py
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple, get_args
 
@@ -31,6 +31,7 @@ from .turn_conditions import TurnConditions
 from .types import find_header_interface, find_interface, parse_flow_type
 from .values import (
     LOST,
+    NOT_PASSED,
     WHICH_TURN,
     FlowValue,
     FlowValues,
@@ -175,7 +176,8 @@ def _select_lost(names: Sequence[FlowValue]) -> list[FlowValue]:
     """Of names on one way to a call, where none is known, those that are there all the same; not what is empty."""
     if any(one.text is not None for one in names):
         return []
-    return [one for one in names if not one.uncalled and not one.unpassed and one.reason != _EMPTY]
+    passed = (one for one in names if one.reason != _EMPTY and not one.reason.endswith(NOT_PASSED))
+    return [one for one in passed if not one.uncalled and not one.unpassed]
 
 
 class Sites:
@@ -304,16 +306,28 @@ class Sites:
                 names = tuple(dict.fromkeys(one for _, own in rows for one in own))
                 known = tuple(one for one in names if one.text is not None)
                 in_part = tuple(one for one in names if one.shown)
-                lost = [one for own in (own for _, own in rows) for one in _select_lost(own)][:1] if known else []
+                lost = self._list_lost(use, zip(ways, rows, strict=True)) if known else []
                 names = known or in_part or names[:1] if not any(one.beside for one in names) else names
                 if lost and names is known:
-                    names = (*known, *(one._replace(beside=True, shown="") for one in lost))
+                    names = (*known, lost[0]._replace(beside=True, shown=""))
         if len(spaces) > 1:
             return "", self._join_spaces(spaces, names)
         prefix = spaces[0].text or ""
         if spaces[0].how != "literal" or spaces[0].only_if or prefix.startswith(LOST):
             return ("" if prefix != "~" else prefix), self._join_spaces(spaces, names)
         return prefix, names
+
+    @staticmethod
+    def _list_lost(
+        use: FrameworkCall, rows: Iterable[tuple[FlowValues, tuple[object, tuple[FlowValue, ...]]]]
+    ) -> list[FlowValue]:
+        """Of the names on the ways to a call those of which nothing is known, though the call is come to."""
+        found: list[FlowValue] = []
+        for way, (_, names) in rows:
+            lost = _select_lost(names)
+            if lost and not any(decided.holds is False for _, decided in way.decide_guards(use.fn, use.call.guard)):
+                found += lost
+        return found
 
     def _has_turns(self, use: FrameworkCall, values: FlowValues) -> bool:
         """Whether an endpoint of a name that is not written as such is made in several turns of a loop."""

@@ -17,7 +17,7 @@ _MOST = 200
 _ASKING = frozenset(("if", "unless", "case"))
 
 
-class Declaration(NamedTuple):
+class DefaultGiven(NamedTuple):
     """A use that declares a parameter, or reads it with a default. turns, way: the turns of loops, by the place of
     their function and their line, and the calls of functions in which it is about this parameter."""
 
@@ -27,7 +27,7 @@ class Declaration(NamedTuple):
 
 
 class SetMember(NamedTuple):
-    """A call of `setattr` that sets a member, as the assignment that it is. turns, way: as for Declaration; only_if:
+    """A call of `setattr` that sets a member, as the assignment that it is. turns, way: as for DefaultGiven; only_if:
     the condition in the loops around under which it is come to, where that is not known."""
 
     fn: Fn
@@ -46,7 +46,7 @@ class NamesInTurns:
         self._is_asked = False
         self._rows: dict[int, SetMember] = {}
 
-    def list_declared(self, name: str) -> Sequence[Declaration]:
+    def list_declared(self, name: str) -> Sequence[DefaultGiven]:
         """The declarations of a parameter under a name that is put together. None while these are worked out."""
         return () if self._is_asked else self._declared.get(name, ())
 
@@ -68,8 +68,8 @@ class NamesInTurns:
         return variable.owner in (owner.key, *below, *(one.key for one in self._code.list_bases(owner)))
 
     @cached_property
-    def _declared(self) -> dict[str, list[Declaration]]:
-        found: dict[str, list[Declaration]] = {}
+    def _declared(self) -> dict[str, list[DefaultGiven]]:
+        found: dict[str, list[DefaultGiven]] = {}
         self._is_asked = True
         try:
             for use in self._calls.select_uses("parameter"):
@@ -78,7 +78,7 @@ class NamesInTurns:
                 if name is None or default is None or name.kind == "text":
                     continue
                 for values, text, _ in self._list_named(name, use.fn, use.call):
-                    found.setdefault(text, []).append(Declaration(use, values.turns, values.way))
+                    found.setdefault(text, []).append(DefaultGiven(use, values.turns, values.way))
         finally:
             self._is_asked = False
         return found

@@ -26,7 +26,7 @@ from .given_lists import GivenLists
 from .graph import How
 from .literals import spell_number
 from .makers import Makers
-from .named_in_turns import Declaration, NamesInTurns
+from .named_in_turns import DefaultGiven, NamesInTurns
 from .names import is_open, make_open_part, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
 from .reaching import LOOPS, FlowValue, ReachingValues
@@ -75,6 +75,7 @@ _EACH = FlowExpr("other")
 _COUNTER = "enumerate"
 TOO_MANY = "too many steps"
 WHICH_TURN = "which turn of the loop it is"
+NOT_PASSED = "has no known value that passes the conditions around"
 _TOGETHER = "these parts of the name belong together"
 _MEASURES = re.compile(r"([\w.]+)\.size\(\)\Z")
 _FLAG = re.compile(r"(!|not )?\s*\(?((?:self\.|this->|this\.)?[A-Za-z_]\w*)\)?")
@@ -1006,7 +1007,7 @@ class FlowValues:
             lambda place: _spell_guards([fn.facts.guards[place]], negated=True),
         )
         if found.held and not values:
-            yield FlowValue(None, "given", f"`{variable.name}` has no known value that passes the conditions around")
+            yield FlowValue(None, "given", f"`{variable.name}` {NOT_PASSED}")
         yield from _restore_alone(values)
 
     def _select_overridden(self, callee: str, fn: Fn) -> list[Fn]:
@@ -1757,7 +1758,7 @@ class FlowValues:
                 if one.text is not None:
                     yielded = True
                     yield one
-        if not yielded and any(map(self._is_typed_alone, (Declaration(use), *others))):
+        if not yielded and any(map(self._is_typed_alone, (DefaultGiven(use), *others))):
             # It has another value than what stands where it is missing.
             yield FlowValue(
                 None, "unresolved", f"{NO_DEFAULT}`{name}` is declared without a value: it is given at start"
@@ -1766,12 +1767,12 @@ class FlowValues:
             reason = f"{NO_DEFAULT}`{name}` has no default here" if name else "which parameter it is, is not known"
             yield FlowValue(None, "given", reason)
 
-    def _is_typed_alone(self, one: Declaration) -> bool:
+    def _is_typed_alone(self, one: DefaultGiven) -> bool:
         """Whether a parameter is declared with its type alone."""
         default = self.calls.find_argument(one.use, one.use.row.default) if one.use.row.default else None
         return default is not None and _is_type(default)
 
-    def _evaluate_declaration(self, one: Declaration, name: str, seen: tuple) -> Iterator[FlowValue]:
+    def _evaluate_declaration(self, one: DefaultGiven, name: str, seen: tuple) -> Iterator[FlowValue]:
         """The default that a declaration gives a parameter, in the turns of the loops in which it gives it to this
         one."""
         values = self._limit_to_way(one.turns, one.way)
@@ -1791,26 +1792,26 @@ class FlowValues:
         chosen, calls = {**self.turns, **turns}, {**self.way, **way}
         return self._make_copy(self.settings, self.arguments, calls, self.within, self.node, self.made, chosen)
 
-    def _list_declared(self, name: str) -> Sequence[Declaration]:
+    def _list_declared(self, name: str) -> Sequence[DefaultGiven]:
         """The declarations of a parameter, and the reads with a default."""
         return [*self.declared.get(name, ()), *self.by_name.list_declared(name)]
 
-    def _select_running(self, declared: list[Declaration]) -> list[Declaration]:
+    def _select_running(self, declared: list[DefaultGiven]) -> list[DefaultGiven]:
         """The declarations in functions that run, where it is known which do."""
         if self._works:
             self._works[-1].is_limited = self.within is not None
         return [one for one in declared if self.runs(one.use.fn)] if self.within is not None else []
 
     @cached_property
-    def declared(self) -> dict[str, list[Declaration]]:
+    def declared(self) -> dict[str, list[DefaultGiven]]:
         """Declarations of parameters and reads with a default, by their literal names."""
-        found: dict[str, list[Declaration]] = {}
+        found: dict[str, list[DefaultGiven]] = {}
         for use in self.calls.select_uses("parameter"):
             if self.calls.find_argument(use, use.row.default) is None:
                 continue
             name = self.calls.find_argument(use, use.row.topic)
             if name is not None and name.kind == "text":
-                found.setdefault(name.text, []).append(Declaration(use))
+                found.setdefault(name.text, []).append(DefaultGiven(use))
         return found
 
     def list_filling(self, variable: Variable) -> list[FrameworkCall]:

@@ -86,6 +86,10 @@ OUT = PUB.format("self.out_topic")
      {("/in", "literal", "")}),
     (f"for name, value in [('a', '/a'), ('b', '/b')]:\n    setattr(self, f'{{name}}_out', value)\n"
      f"{PUB.format('self.b_out')}", {("/b", "literal", "")}),
+    (f"self.declare_parameter('out_topic', '/o')\nfor name in ['out_topic', 'rate']:\n"
+     f"    setattr(self, name, self.get_parameter(name).value)\nself.out_topic = str(self.out_topic)\n{OUT}",
+     {("/o", "default", "")}),
+    (f"for name, value in {{**DEFAULTS, 'x': 1}}.items():\n    setattr(self, name, value)\n{OUT}", {("?", "", "")}),
     # Through a method that is called with each.
     (f"self.read_one('front', '/f')\nself.read_one('rear', '/r')\n{PUB.format('self.front')}",
      {("/f", "default", "")}),
@@ -129,6 +133,11 @@ ALL = {("/f", "default", ""), ("/l", "default", ""), ("/r", "default", "")}
      {("/front/f", "default", ""), ("/left/l", "default", ""), ("/right/r", "default", "")}),
     # A turn whose name is not known is told beside the others.
     ("for topic in ['/a', ask()]:\n    " + PUB.format("topic"), {("/a", "literal", ""), ("?", "", "")}),
+    ("for topic in ['/a', ask()]:\n    if topic == 'x':\n        continue\n    " + PUB.format("topic"),
+     {("/a", "literal", ""), ("?", "", "")}),
+    ("for name, topic in [('a', '/a'), ('b', ask())]:\n    if name == 'b':\n        continue\n    "
+     + PUB.format("topic"),
+     {("/a", "literal", "")}),
     ("for topic in ['/a', '/b']:\n    " + PUB.format("topic"), {("/a", "literal", ""), ("/b", "literal", "")}),
 ])  # fmt: skip
 def test_parameters_declared_in_turns(body, expected):
