@@ -30,7 +30,7 @@ FIXED = (
     "packages/unreachable_script__copied",
     "packages/unresolvable_key",
     "packages/wrong_dependency_kind",
-    "sources/missing_include",
+    "sources/missing_standard_include",
 )
 Fix = Callable[..., str]
 

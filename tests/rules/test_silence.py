@@ -867,7 +867,7 @@ SILENT = {
         ("msg/Tracks.msg", "geometry_msgs/Pose[] poses", "float64 length"),
     ),
     "a name that comes along under the C++ standard that is set": Silent(
-        "missing-include",
+        "missing-standard-include",
         ("jazzy",),
         ament(
             "set(CMAKE_CXX_STANDARD 20)\nadd_library(sled sled.cpp)\ninstall(TARGETS sled DESTINATION lib)",
@@ -876,7 +876,7 @@ SILENT = {
         ("CMakeLists.txt", "STANDARD 20", "STANDARD 17"),
     ),
     "a macro that the file defines where nothing else does": Silent(
-        "missing-include",
+        "missing-standard-include",
         ("jazzy",),
         ament(
             "find_package(PCL REQUIRED)\nadd_library(sled sled.cpp)\n"
@@ -889,7 +889,7 @@ SILENT = {
         ("sled.cpp", "#define FLT_MAX 3.4e38F", "#define FAR 3.4e38F"),
     ),
     "a header that only a program of tests compiles": Silent(
-        "missing-include",
+        "missing-standard-include",
         ("jazzy",),
         ament(
             "add_executable(slide test/slide.cpp)\ninstall(DIRECTORY include/ DESTINATION include)\n"
@@ -901,7 +901,7 @@ SILENT = {
         ("test/slide.cpp", "#include <map>\n", ""),
     ),
     "a header that comes through the package's own": Silent(
-        "missing-include",
+        "missing-standard-include",
         ("jazzy",),
         ament(
             "add_library(sled sled.cpp)\ninstall(TARGETS sled DESTINATION lib)",

@@ -205,7 +205,7 @@ def test_a_find_module_of_cmake_modules(cmake, include, expected, tmp_path):
 )
 def test_a_stream_whose_header_nothing_brings(source, expected, tmp_path):
     told = severities(
-        tmp_path, "missing-include", "sstream", "noetic",
+        tmp_path, "missing-standard-include", "sstream", "noetic",
         cmake="add_library(sled sled.cpp)\n", sled_DOT_cpp=f"#include <vector>\n{source}\n",
     )  # fmt: skip
     assert told == expected

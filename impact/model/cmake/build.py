@@ -35,7 +35,8 @@ class FoundPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     conditions: everything the call stands under, outermost first. at is the argument's own place.
     prefix: the variable or variable prefix of pkg_check_modules and find_library; its further names are in
     optional_components. via: the command of another package that looks for it (`moveit_package`), empty when this
-    package asks itself; at is then the call of that command.
+    package asks itself; at is then the call of that command. placed: the package says where it lies, by a variable or
+    an argument.
     """
 
     name: str
@@ -50,6 +51,7 @@ class FoundPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     prefix: str = ""
     conditions: tuple[Condition, ...] = ()
     via: str = ""
+    placed: bool = False
 
 
 class DefinedMacro(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -12,6 +12,7 @@ from typing import Generic, NamedTuple, TypeVar
 
 from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
+from ...facts.cpp.flow_values import ELEMENTS
 from ...facts.flow import (
     Alias,
     Assignment,
@@ -979,9 +980,16 @@ class FlowCode:
         owner = self.find_owner(fn)
         if owner is None or fn.is_lambda or not name.isidentifier() or name[:2] == name[-2:] == "__":
             return True
-        bases = {get_tail(base) for cls in self.list_bases(owner) for base in cls.facts.bases}
-        others = {base for base in bases if base not in self.classes and base not in _CALL_NOTHING}
-        return bool(others) or name in self.mentioned or name == get_tail(owner.name)
+        if name in ELEMENTS:
+            return True  # facts have an element for such a call
+        return not self.is_called_by_code(owner) or name in self.mentioned or name == get_tail(owner.name)
+
+    @cache_method
+    def is_called_by_code(self, cls: Cls) -> bool:
+        """Whether nothing but the code calls methods of a class by their names: all of its bases are in the code, or
+        are known to call none."""
+        bases = {get_tail(base) for one in self.list_bases(cls) for base in one.facts.bases}
+        return all(base in self.classes or base in _CALL_NOTHING for base in bases)
 
     def is_idle(self, fn: Fn) -> bool:
         """Whether a function is a method that nothing calls, of a class that nobody else can call methods of, and that
@@ -989,8 +997,7 @@ class FlowCode:
         owner, name = self.find_owner(fn), get_tail(fn.facts.name)
         if owner is None or fn.is_lambda or self.is_constructor(fn) or name in self.handed_on:
             return False
-        bases = {get_tail(base) for cls in self.list_bases(owner) for base in cls.facts.bases}
-        return not self.callers.get(fn) and all(base in self.classes or base in _CALL_NOTHING for base in bases)
+        return not self.callers.get(fn) and self.is_called_by_code(owner)
 
     @cached_property
     def handed_on(self) -> frozenset[str]:
