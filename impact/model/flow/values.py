@@ -856,7 +856,7 @@ class FlowValues:
             and (rests.is_made is None or rests.is_made == bool(made))
             and (not rests.turns or all(self.turns.get(loop) == turn for loop, turn in rests.turns.items()))
             and (rests.arguments is UNASKED or rests.arguments == self.arguments)
-            and all(self.list_settings_below(prefix) == given for prefix, given in rests.below.items())
+            and (not rests.below or all(self.list_settings_below(one) == given for one, given in rests.below.items()))
             and (not rests.settings or all(self.find_setting(name) == v for name, v in rests.settings.items()))
         )
 
