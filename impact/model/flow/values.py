@@ -1261,9 +1261,13 @@ class FlowValues:
     def _evaluate_constant(self, variable: Variable, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
         name = variable.name
         found = self.code.list_constants(variable, fn)
+        # The preprocessor, or the program that is built, chooses one of several.
+        several = len({constant.value for constant, _ in found if constant.value is not None}) > 1
+        condition = f"`{name}` is defined so" if several else ""
         for constant, source in found:
             if constant.value is not None:
-                yield from self._evaluate(constant.value, self.code.find_first(source, fn), constant.line, seen)
+                holder = self.code.find_first(source, fn)
+                yield from put_under_more(self._evaluate(constant.value, holder, constant.line, seen), condition)
         if found:
             return
         if "::" in name or "." in name:
