@@ -898,7 +898,9 @@ class Join:
         """On what it depends that a node comes to a call, as Endpoint.only_if has it."""
         if isinstance(owner, Running) and not self._is_called(use.fn, owner):
             return f"something calls `{use.fn.name or 'it'}`"
-        texts = [guard.text for guard in self.list_guards(use.fn, use.call.guard) if guard.kind == "cpp"]
+        guards = self.list_guards(use.fn, use.call.guard)
+        texts = [guard.text for guard in guards if guard.kind == "cpp"]
+        texts += [f"something runs {guard.text}" for guard in guards if guard.kind == "never"]
         return " && ".join((*texts, *self._list_closed(use, owner)))
 
     def _is_called(self, fn: Fn, running: Running) -> bool:
