@@ -470,9 +470,9 @@ class Join:
             below = f"{one.node.name}/"
             settings = {name[len(below) :]: text for name, text in settings.items() if name.startswith(below)}
         for load in self.hosts.list_hosted(one.functions, one.values, settings):
-            for part in self.list_running():
+            for part in self._loadable:
                 is_it = self._is_derived(part, load.name) if load.is_base else self._is_plugin(part.program, load.name)
-                if part.program.kind != "plugin" or not is_it or not part.functions:
+                if not is_it:
                     continue
 
                 def is_named(name: str, program: StartableProgram = part.program) -> bool:
@@ -487,6 +487,11 @@ class Join:
                         node=one.node, values=values.limit_to_calls({**values.way, **way}), instance=one.instance,
                         within=within, only_if=load.only_if,
                     )  # fmt: skip
+
+    @cached_property
+    def _loadable(self) -> list[Running]:
+        """The plugins that a program may load into itself."""
+        return [part for part in self.list_running() if part.program.kind == "plugin" and part.functions]
 
     def _is_derived(self, one: Running, base: str) -> bool:
         """Whether the class of a plugin derives from one of a name."""
@@ -931,15 +936,19 @@ class Join:
         """On what it depends that a node comes to a call, as Endpoint.only_if has it."""
         if isinstance(owner, Running) and not self._is_called(use.fn, owner):
             return f"something calls `{use.fn.name or 'it'}`"
-        texts = [guard.text for guard in self.list_guards(use.fn, use.call.guard) if guard.kind == "cpp"]
+        guards = self.list_guards(use.fn, use.call.guard)
+        texts = [guard.text for guard in guards if guard.kind == "cpp"]
+        texts += [f"something runs {guard.text}" for guard in guards if guard.kind == "never"]
         return " && ".join((*texts, *self._list_closed(use, owner)))
 
     def _is_called(self, fn: Fn, running: Running) -> bool:
         """Whether something that a node runs may call a function."""
-        if fn not in running.functions or not self.code.may_be_called(fn):
+        if fn not in running.functions:
             return False
         # What another program calls, or finds by name, is not seen from a plugin alone.
         if running.program.kind not in ("executable", "script", "component") or not running.program.roots:
+            return self.code.may_be_called(fn)
+        if not self.called.is_called_by_code(fn):
             return True
         known = self._called_of.get(id(running.functions))
         if known is None:

@@ -870,7 +870,7 @@ class FlowValues:
             and (rests.is_made is None or rests.is_made == bool(made))
             and (not rests.turns or all(self.turns.get(loop) == turn for loop, turn in rests.turns.items()))
             and (rests.arguments is UNASKED or rests.arguments == self.arguments)
-            and all(self.list_settings_below(prefix) == given for prefix, given in rests.below.items())
+            and (not rests.below or all(self.list_settings_below(one) == given for one, given in rests.below.items()))
             and (not rests.settings or all(self.find_setting(name) == v for name, v in rests.settings.items()))
         )
 
@@ -1326,9 +1326,13 @@ class FlowValues:
     def _evaluate_constant(self, variable: Variable, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
         name = variable.name
         found = self.code.list_constants(variable, fn)
+        # The preprocessor, or the program that is built, chooses one of several.
+        several = len({constant.value for constant, _ in found if constant.value is not None}) > 1
+        condition = f"`{name}` is defined so" if several else ""
         for constant, source in found:
             if constant.value is not None:
-                yield from self._evaluate(constant.value, self.code.find_first(source, fn), constant.line, seen)
+                holder = self.code.find_first(source, fn)
+                yield from put_under_more(self._evaluate(constant.value, holder, constant.line, seen), condition)
         if found:
             return
         if "::" in name or "." in name:
