@@ -60,8 +60,8 @@ def test_since_when_a_version_has_a_name(name, target, kind, since):
     [
         ("humble", "", "; what its files hold is judged by debian bullseye (1.11.1) and debian bookworm (1.13.0), where"
                        " they agree"),
-        ("jazzy", "", "; what its files hold is judged by debian bookworm (1.13.0) and debian trixie (1.15.0), where they"
-                      " agree"),
+        ("jazzy", "", "; what its files hold is judged by debian bookworm (1.13.0) and debian trixie (1.15.0), where"
+                      " they agree"),
         # No release before Ubuntu 20.04 was read.
         ("noetic", "", "; what its files hold is judged by debian bullseye (1.11.1), a later release"),
         # Debian stands for itself.
