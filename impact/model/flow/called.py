@@ -78,7 +78,7 @@ class CalledFunctions:
         owner = code.find_owner(fn)
         if owner is None:
             return not fn.facts.owner
-        return name != get_tail(owner.name) and code.is_called_by_code(owner)
+        return name != get_tail(owner.name) and code.is_called_by_code(owner, name)
 
     @cached_property
     def _declared_names(self) -> frozenset[str]:

@@ -506,7 +506,9 @@ class Join:
             written = self.calls.find_argument(candidate, candidate.row.topic)
             values = running.evaluate(written, candidate.fn, candidate.call.line)
             # `_` stands for a name that options give.
-            found = next((value.text for value in values if value.text and value.text != "_"), "")
+            texts = dict.fromkeys(value.text for value in values if value.text and value.text != "_")
+            # Which of several it is, is not known.
+            found = next(iter(texts), "") if len(texts) < 2 else ""
             given = self.objects.find_own_name(candidate, running)
             found = found if given is None else given
             if use is None or found:

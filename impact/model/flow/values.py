@@ -11,6 +11,8 @@ from itertools import islice, product
 from operator import itemgetter
 from typing import NamedTuple, TypeVar
 
+from msgspec import structs
+
 from ....edges.groups import group_pairs
 from ...facts.flow import Assignment, FlowCall, FlowExpr, FlowParameter, Guard
 from ...facts.python.flow_expressions import LONGEST_OTHER, make_join
@@ -566,6 +568,7 @@ class FlowValues:
         self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
     ) -> Iterator[FlowValue]:  # fmt: skip
         """What stands at a place, at a key, or in each turn of a loop."""
+        hows = frozenset[How]()
         if index.kind in ("number", "text"):
             found = self.elements.select(container, index, fn, line)
         elif index.kind == "other" and not index.text and container.text == _COUNTER:
@@ -576,12 +579,11 @@ class FlowValues:
             # A loop over a dictionary goes through its keys.
             found = [one._replace(value=_get_key(one.value)) for one in found or ()]
         else:
-            found = self._select_at_each(container, index, fn, line, seen)
+            found, hows = self._select_at_each(container, index, fn, line, seen)
         if found:
             for one in found:
-                yield from put_under_more(
-                    self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value))), one.only_if
-                )
+                values = self._evaluate_listed(one, (*seen, ("element", one.value)))
+                yield from _put_under(values, DecidedCondition(None, hows), "") if hows else values
         elif index.kind == "number":
             one_of = list(self._evaluate_elements(container, fn, line, seen))
             yield from one_of
@@ -617,11 +619,11 @@ class FlowValues:
 
     def _select_at_each(
         self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
-    ) -> list[ListElement]:  # fmt: skip
-        """What a dictionary has at each key that an expression may be worth; nothing where one of these is not known,
-        or it has no such key."""
-        if index.kind != "name" or self._is_in(("key", index.text), seen):
-            return []
+    ) -> tuple[list[ListElement], frozenset[How]]:  # fmt: skip
+        """What a dictionary has at each key that an expression may be worth, with how these are known; nothing where
+        one of them is not known, or it has no such key."""
+        if index.kind not in ("name", "call") or self._is_in(("key", index.text), seen):
+            return [], frozenset()
         keys = list(self._evaluate(index, fn, line, (*seen, ("key", index.text))))
         found: list[ListElement] = []
         for key in keys:
@@ -629,9 +631,9 @@ class FlowValues:
             if not chosen and is_number(key.text or ""):
                 chosen = self.elements.select(container, FlowExpr("number", key.text or ""), fn, line)
             if not chosen:
-                return []
+                return [], frozenset()
             found += chosen
-        return found
+        return found, frozenset(key.how for key in keys if key.how != "literal")
 
     def _list_following(self, index: FlowExpr, fn: Fn, line: int) -> list[str] | None:
         return self.command_line.list_following(index, fn, _find_guard(fn, line), self.arguments or ())
@@ -699,9 +701,7 @@ class FlowValues:
         known = known or (self._list_counted(path, fn, line) if path in fn.locals else None)
         if known:
             for one in known:
-                yield from put_under_more(
-                    self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value))), one.only_if
-                )
+                yield from self._evaluate_listed(one, (*seen, ("element", one.value)))
             return
         variable = self.code.identify(path, fn)
         if self._is_in(variable, seen):
@@ -1002,6 +1002,8 @@ class FlowValues:
         owner = self.code.find_owner(fn) if len(targets) > 1 and head in ("", "this") and "::" not in name else None
         if owner is None or not self.code.list_overrides(owner, name):
             return targets
+        if self.code.is_constructor(fn) and fn.source.facts.language == "cpp":
+            return self.code.find_method(owner, name) or targets  # what derives from it is not begun yet
         kept = {target for cls in self._list_object_classes(owner) for target in self.code.find_method(cls, name)}
         return [target for target in targets if target in kept] or targets
 
@@ -1390,9 +1392,7 @@ class FlowValues:
             chosen = self.elements.select(FlowExpr("name", head), value.parts[0], fn, line)
             if chosen:
                 for one in chosen:
-                    yield from put_under_more(
-                        self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value))), one.only_if
-                    )
+                    yield from self._evaluate_listed(one, (*seen, ("element", one.value)))
                 return
         if python and last == "format" and head and not head.endswith("()") and value.receiver is None:
             yield from self._evaluate_format(value, head, fn, line, seen)
@@ -1954,6 +1954,8 @@ def _spell_guards(guards: Sequence[Guard], negated: bool = False) -> str:
     """The condition under which all of some guards hold, given from the nearest, or do not."""
     kinds = {"if": "unless", "unless": "if"} if negated else {}
     asking = [one for one in guards if one.kind in ASKING and not one.text.startswith("catch (")]
+    caught = [structs.replace(one, kind="if", text=f"catch ({one.text})") for one in guards if one.kind == "catch"]
+    asking = sorted((*asking, *caught), key=lambda one: one.line, reverse=True) if caught else asking
     return " && ".join(spell_condition(kinds.get(one.kind, one.kind), one.text) for one in reversed(asking))
 
 
