@@ -1,5 +1,5 @@
-"""What libraries of images and clouds do with a message: encodings that are not known, sizes that do not fit, fields that
-are not there, and nothing where all is right."""
+"""What libraries of images and clouds do with a message: encodings that are not known, sizes that do not fit, fields
+that are not there, and nothing where all is right."""
 
 from __future__ import annotations
 
