@@ -212,9 +212,8 @@ def score(options: argparse.Namespace, systems: list[dict], records: list[dict])
         print(f"seconds: median {statistics.median(times):.2f}, most {max(times):.2f}")
     for word in ("processor", "clock"):
         if whole := [said[word] for _, said in pairs if word in said]:
-            print(
-                f"seconds of the {word} with compiling and replays: median {statistics.median(whole):.2f}, most {max(whole):.2f}"
-            )
+            middle, most = statistics.median(whole), max(whole)
+            print(f"seconds of the {word} with compiling and replays: median {middle:.2f}, most {most:.2f}")
     sizes = [said["memory"] for _, said in pairs if "memory" in said]
     if sizes:
         print(f"memory of all processes of a run: most {max(sizes)} MB")

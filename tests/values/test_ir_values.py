@@ -125,7 +125,9 @@ def test_a_calculated_float_lies_within_its_bounds(first, second, operations):
     assert span.has_nan if math.isnan(value) else span.low <= value <= span.high
 
 
-@pytest.mark.parametrize("convert, low, high", [(z3.fpToFPUnsigned, 0.0, 255.0), (z3.fpSignedToFP, -128.0, 127.0)])
+@pytest.mark.parametrize(
+    "convert, low, high", [(z3.fpToFPUnsigned, 0.0, 255.0), (z3.fpSignedToFP, -128.0, 127.0)]
+)
 def test_an_integer_that_becomes_a_float_keeps_its_bounds(convert, low, high):
     byte = Solving(0.0).make_input("byte", InputKind.INTEGER, 8).term
     assert Ranges({}).find_float_span(convert(z3.RNE(), byte, z3.Float64())) == FloatSpan(low, high, False)

@@ -120,7 +120,6 @@ def test_a_fault_of_the_explorer_costs_one_callback(tmp_path, monkeypatch):
     (sender,) = json.loads(out)["callbacks"]
     assert "made for this test" in sender["reason"] and "fault of rosimpact" in sender["reason"]
 
-
 FOLLOWER = """
 #include <ros/ros.h>
 #include <std_msgs/Int32.h>
@@ -157,7 +156,6 @@ def test_a_member_of_an_object_of_main_that_another_method_reads(tmp_path):
     assert status == 0, err
     counts = {one["callback"]: one["ways"] for one in json.loads(out)["callbacks"]}
     assert set(counts["Follower::onSide"]) == {"handled"} and set(counts["Follower::onSeen"]) == {"ignored"}
-
 
 PACED = """
 #include <ros/ros.h>
