@@ -146,3 +146,60 @@ def test_an_image_that_another_callback_keeps_is_any(ros1):
 def test_an_image_that_is_kept_is_not_said_to_be_ignored(ros1):
     one = explore(ros1)["onStored"]
     assert one.counts.get(Reaction.UNKNOWN) or one.counts.get(Reaction.HANDLED)
+
+
+PYTHON = """#!/usr/bin/env python3
+import rospy
+from cv_bridge import CvBridge, CvBridgeError
+from sensor_msgs.msg import Image
+from std_msgs.msg import Int32
+
+
+class Watcher:
+    def __init__(self):
+        self.bridge = CvBridge()
+        self.pub = rospy.Publisher("height", Int32, queue_size=1)
+        rospy.Subscriber("plain", Image, self.on_plain)
+        rospy.Subscriber("guarded", Image, self.on_guarded)
+        rospy.Subscriber("checked", Image, self.on_checked)
+
+    def on_plain(self, msg):
+        image = self.bridge.imgmsg_to_cv2(msg, "bgr8")  # on_plain
+        self.pub.publish(msg.height)
+
+    def on_guarded(self, msg):
+        try:
+            image = self.bridge.imgmsg_to_cv2(msg, "bgr8")
+        except CvBridgeError as error:
+            rospy.logerr(error)
+            return
+        self.pub.publish(msg.height)
+
+    def on_checked(self, msg):
+        if msg.encoding != "mono8":
+            return
+        image = self.bridge.imgmsg_to_cv2(msg)
+        self.pub.publish(msg.height)
+
+
+rospy.init_node("watcher")
+Watcher()
+rospy.spin()
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "crashes", "reactions"),
+    [
+        ("on_plain", {CrashKind.EXCEPTION}, {Reaction.HANDLED}),
+        ("on_guarded", set(), {Reaction.HANDLED, Reaction.LOG_ONLY}),
+        ("on_checked", set(), {Reaction.HANDLED, Reaction.IGNORED}),
+    ],
+)
+def test_an_encoding_that_cv_bridge_does_not_know_in_python(tmp_path, name, crashes, reactions):
+    root = write_workspace(tmp_path, 1, {"scripts/watcher.py": PYTHON}, "src/none.cpp")
+    answer = explore_values(root, callbacks=(name,), replays=True, publishers=False, jobs=1)
+    (one,) = answer.report.callbacks
+    assert one.reason == ""
+    assert list_crashes(one) == {(kind, find_line(PYTHON.replace("#", "//"), name), True) for kind in crashes}
+    assert {each for each, count in one.counts.items() if count} - {Reaction.CRASH, Reaction.UNKNOWN} == reactions
