@@ -1,4 +1,4 @@
-"""Callbacks of what is made for interfaces of a node (`node->get_node_topics_interface()`) and not for the node itself."""
+"""Callbacks of what is made for interfaces of a node (`node->get_node_topics_interface()`), not for the node itself."""
 
 from __future__ import annotations
 

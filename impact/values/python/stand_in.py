@@ -211,39 +211,14 @@ def check_encoding(picture):
     """Raises what cv_bridge does for an encoding that it does not know."""
     encoding = getattr(picture, "encoding", None)
     if isinstance(encoding, str) and encoding not in ENCODINGS and not encoding.startswith(ENCODING_TYPES):
-        raise CvBridgeError("Unrecognized image encoding [%s]" % encoding)
+        raise CvBridgeError("Unrecognized image encoding [" + encoding + "]")
 
 
 ENCODING_TYPES = ("8U", "8S", "16U", "16S", "32S", "32F", "64F")
-ENCODINGS = set(
-    [
-        "mono8",
-        "mono16",
-        "rgb8",
-        "rgb16",
-        "bgr8",
-        "bgr16",
-        "rgba8",
-        "rgba16",
-        "bgra8",
-        "bgra16",
-        "yuv422",
-        "bayer_rggb8",
-        "bayer_bggr8",
-        "bayer_gbrg8",
-        "bayer_grbg8",
-        "bayer_rggb16",
-        "bayer_bggr16",
-        "bayer_gbrg16",
-        "bayer_grbg16",
-        "yuv422_yuy2",
-        "uyvy",
-        "yuyv",
-        "nv12",
-        "nv21",
-        "nv24",
-    ]
-)
+ENCODINGS = ("mono8", "mono16", "rgb8", "rgb16", "bgr8", "bgr16", "rgba8", "rgba16", "bgra8", "bgra16", "yuv422")
+ENCODINGS += ("bayer_rggb8", "bayer_bggr8", "bayer_gbrg8", "bayer_grbg8")
+ENCODINGS += ("bayer_rggb16", "bayer_bggr16", "bayer_gbrg16", "bayer_grbg16")
+ENCODINGS += ("yuv422_yuy2", "uyvy", "yuyv", "nv12", "nv21", "nv24")
 ROTATIONS = ("tf.transformations.", "tf_transformations.", "transformations.")
 
 
