@@ -50,7 +50,8 @@ class Machine : public rclcpp::Node {
       get_node_topics_interface(), "level", 1, std::bind(&Machine::onLevel, this, _1));
     b_ = rclcpp::create_subscription<std_msgs::msg::UInt8>(
       *this, "rate", rclcpp::QoS(1), std::bind(&Machine::onRate, this, _1));
-    e_ = subscribe<std_msgs::msg::UInt8>("other", [this](const std_msgs::msg::UInt8 & msg) { reporter_.report(msg.data); });
+    e_ = subscribe<std_msgs::msg::UInt8>(
+      "other", [this](const std_msgs::msg::UInt8 & msg) { reporter_.report(msg.data); });
     c_ = create_subscription<sensor_msgs::msg::Image>("image", 1, std::bind(&Machine::onImage, this, _1));
     d_ = create_subscription<sensor_msgs::msg::PointCloud2>("cloud", 1, std::bind(&Machine::onCloud, this, _1));
     second_ = rclcpp::create_timer(
