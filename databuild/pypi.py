@@ -5,8 +5,10 @@
 Of each library the versions that some platform has are read, an older one and the newest; where one lost names that the
 one before has, the first releases of the minor versions between them are read too, until the one is found that lost
 them. Of names that a module lost before all wheels, such as those of PyQt4's QtGui, the newest wheel says where they
-are. Wheels are downloaded with pip, read as archives and deleted; nothing is installed or run. WORK keeps what was read
-of each, so that a run that was stopped goes on with the next wheel.
+are. Wheels are downloaded with pip, a few at a time, read as archives and deleted; nothing is installed or run. WORK
+keeps what was read of each, so that a run that was stopped goes on with the next wheel; it is read anew when the code
+that reads is another. What pip cannot download is asked for once more; a library of which a wheel is lacking then keeps
+the rows that it has, and is named at the end.
 
 A name is in a version when a module, or its stub, binds it. It is gone from a version on when from then on no version
 has it and each surely lacks it: its module can be read in full and does not bind it, its module's `__getattr__` lists
@@ -18,17 +20,18 @@ from __future__ import annotations
 
 import argparse
 import ast
-import os
+import hashlib
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import zipfile
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -39,6 +42,7 @@ import zstandard
 from ..edges.console import UserError
 from ..edges.files import write_file
 from ..edges.memory import cache_method
+from ..impact.facts.python import source, surface
 from ..impact.facts.python.source import read
 from ..impact.facts.python.surface import ModuleSurface, is_private
 from ..impact.targets.surface.python import UNKNOWN, PythonName, SurfaceNames
@@ -46,6 +50,7 @@ from ..impact.targets.surface.surface import InstalledModule, PythonSurface
 from ..impact.targets.tables import DATA
 from ..impact.targets.unpacked import read_table
 from ..impact.targets.version import is_at_least, parse
+from .extract import module_getattr, python
 from .extract.module_getattr import read_module_getattr
 from .extract.python import extract
 from .includes import list_platform_versions
@@ -77,6 +82,7 @@ MOVED = {
                         "wheels of PyQt5; Differences Between PyQt4 and PyQt5"),
 }  # fmt: skip
 """By their names in platform_versions.yaml."""
+Report = Callable[[str], None]
 _PYTHONS = ("3.12", "3.10", "3.8", "3.6", "3.14", "2.7")
 _MACHINES = ("manylinux_2_28_x86_64", "manylinux_2_17_x86_64", "manylinux2014_x86_64", "manylinux2010_x86_64",
              "manylinux1_x86_64")  # fmt: skip
@@ -84,6 +90,7 @@ _LAST_PYTHON = 14
 _DOWNLOADS = "wheel-"
 _AT_A_TIME = 3
 """Wheels that are downloaded at a time: pip mostly waits."""
+_TRIES, _PATIENCE = 2, 600
 _MANY = 12
 """So many deprecated names of one module are one fact: that the module is not to be used."""
 _OLDER = 8
@@ -213,7 +220,10 @@ def read_wheel(file: Path, version: str) -> PyPIRelease:
                 else:
                     data = _prepare_stub(data)
                 kept = modules if ending == "py" else stubs
-                kept[name] = InstalledModule(name, "", stem == "__init__", _strip_surface(extract(data)))
+                facts = _strip_surface(extract(data))
+                if ending == "py" and b"attach_stub(" in data and f"{path}i" in archive.NameToInfo:
+                    facts = _add_served(facts, extract(archive.read(f"{path}i")))
+                kept[name] = InstalledModule(name, "", stem == "__init__", facts)
     return PyPIRelease(version, tuple(modules.values()), tuple(stubs.values()),
                    tuple(sorted(native - modules.keys())), tuple(sorted(refused)),
                    "\n".join(sorted(word.decode() for word in words)) + "\n" if stubs else "")  # fmt: skip
@@ -237,6 +247,14 @@ def _strip_surface(surface: ModuleSurface) -> ModuleSurface:
     names = (replace(one, line=0, parameters=(), value="", annotation="") for one in surface.names
              if one.kind not in ("method", "property", "instance"))  # fmt: skip
     return replace(surface, names=tuple(names), problems=())
+
+
+def _add_served(module: ModuleSurface, stub: ModuleSurface) -> ModuleSurface:
+    """A module whose `__getattr__` is that of lazy_loader.attach_stub() (SPEC 1 of scientific-python.org), which serves
+    what the stub beside it imports from its own package."""
+    served = tuple(taken for taken in stub.imports if taken.level == 1)
+    left = tuple(one for one in module.open if one != ("", "__getattr__"))
+    return msgspec.structs.replace(module, imports=(*module.imports, *served), open=left)
 
 
 def _list_refused(data: bytes, load: Callable[[str], bytes]) -> frozenset[str]:
@@ -263,11 +281,12 @@ def _read_sibling(archive: zipfile.ZipFile, path: str, module: str) -> bytes:
 
 
 class PyPIIndex:
-    """PyPI, as pip shows it, and what was read of it. work: the folder that keeps that."""
+    """PyPI, as pip shows it, and what was read of it. work: the folder that keeps that. downloads: of each wheel that
+    was downloaded, its bytes and the seconds that pip took."""
 
     def __init__(self, work: Path):
         self.work = work
-        self.downloaded = 0
+        self.downloads: list[tuple[int, float]] = []
         for left in work.glob(f"{_DOWNLOADS}*"):  # by a run that was stopped
             shutil.rmtree(left)
 
@@ -288,7 +307,7 @@ class PyPIIndex:
 
     def read(self, project: str, version: str) -> PyPIRelease | None:
         """A release; None for one without a wheel for Linux."""
-        kept = self.work / f"{project}-{version}.msgpack.zst"
+        kept = self.work / f"{project}-{version}.{_compute_reader_stamp()}.msgpack.zst"
         if kept.exists():
             data = kept.read_bytes()
             return msgspec.msgpack.decode(zstandard.decompress(data), type=PyPIRelease) if data else None
@@ -304,20 +323,38 @@ class PyPIIndex:
         python = next(having, None)
         if python is None:
             return None
+        started = time.monotonic()
         done = self._run(*_select_wheels(python), "--quiet", "--dest", str(folder), f"{project}=={version}")
         wheel = next(folder.glob("*.whl"), None)
         if wheel is None:
             raise UserError(f"pip has no wheel of {project} {version}: {done.stderr.strip()[-300:]}")
-        self.downloaded += wheel.stat().st_size
+        self.downloads.append((wheel.stat().st_size, time.monotonic() - started))
         return wheel
 
     def _run(self, *arguments: str) -> subprocess.CompletedProcess[str]:
-        """Runs pip. Raises UserError where it fails otherwise than that there is no such version."""
+        """Runs pip, and once more where it fails otherwise than that there is no such version. Raises UserError where
+        that fails, too."""
         command = [sys.executable, "-m", "pip", "--disable-pip-version-check", *arguments]
-        done = subprocess.run(command, capture_output=True, text=True, check=False, env={**os.environ}, timeout=900)
-        if done.returncode and "No matching distribution" not in done.stderr:
-            raise UserError(f"pip {' '.join(arguments)}: {done.stderr.strip()[-300:]}")
-        return done
+        failure = ""
+        for _ in range(_TRIES):
+            try:
+                done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=_PATIENCE)
+            except subprocess.TimeoutExpired:
+                failure = f"no answer for {_PATIENCE} seconds"
+                continue
+            # Without an answer of the network, pip knows no version either.
+            nothing = "No matching distribution" in done.stderr and "Retrying (" not in done.stderr
+            if not done.returncode or nothing:
+                return done
+            failure = done.stderr.strip()[-300:]
+        raise UserError(f"pip {' '.join(arguments)}: {failure}")
+
+
+@cache
+def _compute_reader_stamp() -> str:
+    """Differs whenever the code does that reads wheels, so that what another state of it has read is not used."""
+    sources = (Path(__file__), *(Path(module.__file__ or "") for module in (module_getattr, python, source, surface)))
+    return hashlib.sha1(b"".join(path.read_bytes() for path in sources)).hexdigest()[:8]
 
 
 def _select_wheels(python: str) -> list[str]:
@@ -351,28 +388,34 @@ def read_versions(
             read[key] = OfferedNames(release) if release is not None else None
         return read[key]
 
-    def narrow(first: tuple[int, ...], last: tuple[int, ...]) -> None:
-        before, after = get(first), get(last)
-        if before is None or after is None or not any(_iterate_losses(before, after)):
-            return
-        between = [key for key in sorted(minors.values()) if first < key < last]
-        while between:
-            middle = between[len(between) // 2]
-            if get(middle) is not None:
-                narrow(first, middle)
-                narrow(middle, last)
-                return
-            between.remove(middle)
-
     older = [key for key in sorted(minors.values()) if key < min(ends)][-_OLDER:]
     starts = (older[len(older) * part // 4] for part in range(3) if older)
     ends.add(next((key for key in starts if get(key) is not None), min(ends)))
     with ThreadPoolExecutor(_AT_A_TIME) as pool:
-        read.update(zip(sorted(ends), pool.map(get, sorted(ends)), strict=True))
-    told = [key for key in sorted(ends) if get(key) is not None]
-    for first, last in pairwise(told):
-        narrow(first, last)
+
+        def get_all(keys: Iterable[tuple[int, ...]]) -> list[tuple[int, ...]]:
+            """Those of some versions that can be read, oldest first."""
+            asked = sorted(keys)
+            return [key for key, found in zip(asked, pool.map(get, asked), strict=True) if found is not None]
+
+        firsts = sorted(minors.values())
+        gaps = [(one, two, [key for key in firsts if one < key < two]) for one, two in pairwise(get_all(ends))]
+        while gaps := [(one, two, keys) for one, two, keys in gaps if keys and _has_losses(get(one), get(two))]:
+            found = set(get_all(keys[len(keys) // 2] for _, _, keys in gaps))
+            left = []
+            for one, two, keys in gaps:
+                middle = keys.pop(len(keys) // 2)
+                if middle in found:
+                    left.append((one, middle, [key for key in keys if key < middle]))
+                    left.append((middle, two, [key for key in keys if key > middle]))
+                else:
+                    left.append((one, two, keys))
+            gaps = left
     return [found for _, found in sorted(read.items()) if found is not None]
+
+
+def _has_losses(before: OfferedNames | None, after: OfferedNames | None) -> bool:
+    return before is not None and after is not None and any(_iterate_losses(before, after))
 
 
 def _iterate_losses(before: OfferedNames, after: OfferedNames) -> Iterator[str]:
@@ -460,30 +503,46 @@ def group_moved(library: str, moved: MovedNames, release: OfferedNames) -> dict[
             "removed_in": moved.removed_in, "names": names}  # fmt: skip
 
 
-def build_moved(wanted: Mapping[str, MovedNames], index: PyPIIndex, report: Callable[[str], None]) -> list[Any]:
-    """The rows of what modules no longer have, each by the newest version that a platform has."""
-    groups = []
-    for library, moved in sorted(wanted.items()):
-        available = {parse(version): version for version in index.list_versions(moved.project)}
-        keys = sorted(available.keys() & set(map(parse, list_platform_versions(library))))
-        release = index.read(moved.project, available[keys[-1]]) if keys else None
-        if release is not None:
-            groups.append(group_moved(library, moved, OfferedNames(release)))
-            report(f"{library}: {release.version} read; {len(groups[-1]['names'])} names that moved")
-    return groups
+def build_moved(library: str, moved: MovedNames, index: PyPIIndex, report: Report) -> list[dict[str, Any]]:
+    """The row of what a module no longer has, by the newest version that a platform has."""
+    available = {parse(version): version for version in index.list_versions(moved.project)}
+    keys = sorted(available.keys() & set(map(parse, list_platform_versions(library))))
+    release = index.read(moved.project, available[keys[-1]]) if keys else None
+    if release is None:
+        raise UserError("no version that a platform has is there as a wheel")
+    group = group_moved(library, moved, OfferedNames(release))
+    report(f"{library}: {release.version} read; {len(group['names'])} names that moved")
+    return [group]
 
 
-def build_groups(projects: Mapping[str, str], index: PyPIIndex, report: Callable[[str], None]) -> list[dict[str, Any]]:
-    """The rows of all projects. report: is told what was read of each."""
+def build_losses(library: str, project: str, index: PyPIIndex, report: Report) -> list[dict[str, Any]]:
+    """The rows of a library. report: is told what was read of it."""
+    wanted, available = list_platform_versions(library), index.list_versions(project)
+    versions = read_versions(wanted, available, lambda version: index.read(project, version))
+    if not versions:
+        raise UserError("no version that a platform has is there as a wheel")
+    made = group_losses(library, project, find_losses(versions))
+    have = {parse(one.release.version) for one in versions}
+    lacking = " ".join(one for one in sorted(wanted, key=parse) if parse(one) not in have)
+    rows = sum(len(group["names"]) for group in made)
+    report(f"{library}: {len(versions)} versions read, {rows} names" + (f"; no wheel of {lacking}" if lacking else ""))
+    return made
+
+
+def build_groups(index: PyPIIndex, names: Collection[str], report: Report) -> tuple[list[dict[str, Any]], list[str]]:
+    """The rows of some libraries, and which of them could not be read. names: as in PROJECTS and MOVED."""
     groups: list[dict[str, Any]] = []
-    for library, project in sorted(projects.items()):
-        wanted, available = list_platform_versions(library), index.list_versions(project)
-        versions = read_versions(wanted, available, lambda version, project=project: index.read(project, version))
-        made = group_losses(library, project, find_losses(versions))
-        groups += made
-        rows = sum(len(group["names"]) for group in made)
-        report(f"{library}: {len(versions)} versions read, of {len(wanted)} that platforms have; {rows} names")
-    return groups
+    unread = []
+    for library in sorted(names):
+        try:
+            if library in PROJECTS:
+                groups += build_losses(library, PROJECTS[library], index, report)
+            else:
+                groups += build_moved(library, MOVED[library], index, report)
+        except (UserError, OSError, zipfile.BadZipFile) as error:
+            report(f"{library}: not read: {error}")
+            unread.append(library)
+    return groups, unread
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -494,17 +553,22 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--output", type=Path, default=DATA)
     given = parser.parse_args(arguments)
     given.work.mkdir(parents=True, exist_ok=True)
+    started = time.monotonic()
     index, file = PyPIIndex(given.work), given.output / FILE
-    projects = {name: project for name, project in PROJECTS.items() if not given.only or name in given.only}
-    moved = {name: one for name, one in MOVED.items() if not given.only or name in given.only}
-    kept, anew = [], {*projects, *moved}
-    if given.only and file.exists():
-        kept = [one for one in read_table(file, dict[str, Any])["changes"] if one["package"] not in anew]
-    made = build_groups(projects, index, lambda text: print(text, flush=True))
-    made += build_moved(moved, index, lambda text: print(text, flush=True))
-    groups = sorted([*kept, *made], key=lambda group: group["package"])
-    size = write_table(file, {"changes": groups})
-    print(f"{size} bytes, {index.downloaded / 1e6:.0f} MB downloaded")
+    names = sorted(name for name in (*PROJECTS, *MOVED) if not given.only or name in given.only)
+    made, unread = build_groups(index, names, lambda text: print(text, flush=True))
+    if len(unread) == len(names):
+        raise UserError(f"none of {len(names)} libraries could be read; {FILE} stays as it is")
+    anew = set(names) - set(unread)
+    before = read_table(file, dict[str, Any])["changes"] if file.exists() else []
+    kept = [one for one in before if one["package"] not in anew] if given.only or unread else []
+    size = write_table(file, {"changes": sorted([*kept, *made], key=lambda group: group["package"])})
+    megabytes, waited = sum(one for one, _ in index.downloads) / 1e6, sum(seconds for _, seconds in index.downloads)
+    print(
+        f"{len(index.downloads)} wheels downloaded, {megabytes:.0f} MB; {_AT_A_TIME} at a time, {waited:.0f} s in all"
+    )
+    print(f"{size} bytes, {time.monotonic() - started:.0f} s")
+    print(f"{len(anew)} of {len(names)} libraries read" + (f"; not read: {', '.join(unread)}" if unread else ""))
 
 
 if __name__ == "__main__":

@@ -14,12 +14,20 @@ stored, each stored version tells whether the name is there. A row is
 
 Of rows that were derived from release tags, which are what surfaces are made from too, only the unknown ones and those
 that say more stay, and of reviewed rows all but the answered, wrong and bare ones. A contradicted bound is first
-replaced by the versions that the stored ones tell, of each generation of ROS (see derive_bounds). Platform libraries
-have no stored surfaces. Their rows stay, but for those of Python that changes_pypi.json answers for every version that
-a platform has: where they name a replacement, that alone is kept. Of interfaces, their fields and constants, and of
-what is generated from them, the table of interfaces alone is asked, so that a row only lends a replacement. Rows of
-uses stay too: a pattern that is only a qualified name is answered by the surfaces, and still finds places that the
-resolver does not see, such as template arguments and braced initialisers.
+replaced by the versions that the stored ones tell, of each generation of ROS (see derive_bounds).
+
+Platform libraries have no stored surfaces. Of Python, rows go that changes_pypi.json answers for every version that a
+platform has: where they name a replacement, that alone is kept. Of C++, rows on names that Debian's newest version
+declares although they should be gone are wrong and go; where an older one does, the Debian versions between which the
+name went become the bounds. A name that a header only takes over from another namespace (`using std::uint8_t`) is no
+such declaration, and neither is one under a condition, but for `!defined(...)`. Rows that spell one name in several
+ways (`asio::`, `boost::asio::`), with the same replacement, go together.
+
+Of interfaces, their fields and constants, and of what is generated from them, the table of interfaces alone is asked,
+so that a row only lends a replacement. Rows of uses stay too: a pattern that is only a qualified name is answered by
+the surfaces, and still finds places that the resolver does not see, such as template arguments and braced initialisers.
+
+Of the general table, changes.json, a row goes that adds nothing to one on its name in a more special one (`twice`).
 
     python -P -m rosimpact.databuild.superseded [--write]
 """
@@ -36,11 +44,15 @@ from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from ..edges.files import write_file
 from ..impact.targets.availability import Availabilities
-from ..impact.targets.changes import DISTROS
+from ..impact.targets.changes import DISTROS, ChangeRow, merge_rows, read_rows
 from ..impact.targets.distro.distro import DistroTarget
 from ..impact.targets.distro.known import list_known_distros
+from ..impact.targets.providers.libraries import load_libraries
+from ..impact.targets.providers.library import DEBIAN_PACKAGES
 from ..impact.targets.surface.changes import Line
 from ..impact.targets.surface.fields import covers, load_fields
 from ..impact.targets.surface.offers import find_standing
@@ -56,6 +68,9 @@ from .table_file import write_table
 _SIDES = {"api": ("c++",), "python": ("python",), "header": ("header",), "cmake": ("command", "target", "variable")}
 _SEPARATOR = {"c++": "::", "python": ".", "header": "\0"}
 _DERIVED = frozenset(("changes_ros_tags.json.zst",))
+GENERAL = "changes.json"
+_SPECIAL = ("changes_libraries.json", "changes_ros.json", "changes_ros_tags.json.zst")
+"""Tables whose rows come before those of the general one."""
 _GOES = {True: ("answered", "contradicted", "wrong", "bare"), False: ("answered", "wrong", "bare")}
 """Verdicts on rows that go: of derived files, and of reviewed ones."""
 
@@ -298,11 +313,16 @@ def drop_superseded(file: Path) -> tuple[dict[str, Any], Counter[tuple[str, str]
     count: Counter[tuple[str, str]] = Counter()
     kept = []
     for group in content["changes"]:
+        if file.name == GENERAL:
+            group = _drop_twice(group, count)
+            if not group["names"]:
+                continue
         # Of platform libraries nothing is stored; a name that comes back, or is only deprecated, says more.
         asked = not group.get("library") and not group["kind"].startswith("package")
         ros = _find_generation(group) if asked else None
         if group.get("library") and file.name != PYPI_FILE:
-            kept += _drop_read_from_pypi(group, count)
+            judged = _drop_declared(group, count) if group["kind"].startswith("api") else [group]
+            kept += [left for one in judged for left in _drop_read_from_pypi(one, count)]
             continue
         by_bound: dict[tuple[tuple[str, str | int], ...], dict[str, str]] = {}
         for old, new in group["names"].items():
@@ -313,6 +333,79 @@ def drop_superseded(file: Path) -> tuple[dict[str, Any], Counter[tuple[str, str]
                     by_bound.setdefault(tuple(bounds.items()), {})[old] = new
         kept += [{**group, **dict(bounds), "names": names} for bounds, names in by_bound.items()]
     return {**content, "changes": kept}, count
+
+
+def _drop_twice(group: dict[str, Any], count: Counter[tuple[str, str]]) -> dict[str, Any]:
+    """A group of the general table without names to whose rows in more special ones it adds nothing."""
+    special = _load_special_rows()
+    left = {}
+    for old, new in group["names"].items():
+        shared = {key: value for key, value in group.items() if key != "names"}
+        row = msgspec.convert({**shared, "old": old, "new": new}, ChangeRow)
+        first = special.get((row.kind, row.package, old, row.ros))
+        if first is not None and merge_rows(first, row) == first:
+            count[row.kind, "twice"] += 1
+        else:
+            left[old] = new
+    return {**group, "names": left}
+
+
+@cache
+def _load_special_rows() -> dict[tuple[str, str, str, int], ChangeRow]:
+    found: dict[tuple[str, str, str, int], ChangeRow] = {}
+    for name in _SPECIAL:
+        for row in read_rows(DATA / name):
+            found.setdefault((row.kind, row.package, row.old, row.ros), row)
+    return found
+
+
+def _drop_declared(group: dict[str, Any], count: Counter[tuple[str, str]]) -> Iterator[dict[str, Any]]:
+    """A group of rows on a library of C++ without names that Debian's newest version declares, and with the bounds that
+    Debian's versions tell where older ones do. Of a name that was said to be deprecated first, that stays."""
+    bound = group.get("removed_in", "")
+    if not bound or any(group.get(key) for key in ("back_in", "unless", "last_in")):
+        yield group
+        return
+    found = {old: _judge_declared(group["package"], old, bound) for old in group["names"]}
+    spelled = {(old.rpartition("::")[2], group["names"][old]): verdict for old, verdict in found.items() if verdict[0]}
+    by_bounds: dict[tuple[str, str], dict[str, str]] = {}
+    warned = {}
+    for old, new in group["names"].items():
+        verdict, *bounds = spelled.get((old.rpartition("::")[2], new), found[old])
+        if verdict:
+            count[group["kind"], verdict] += 1
+        if verdict != "wrong":
+            by_bounds.setdefault((bounds[0], bounds[1]), {})[old] = new
+        elif group.get("deprecated_in"):
+            warned[old] = new
+    for (last, removed), names in by_bounds.items():
+        yield {**group, **({"last_in": last, "removed_in": removed} if last else {}), "names": names}
+    if warned:
+        yield {**{key: value for key, value in group.items() if key != "removed_in"}, "names": warned}
+
+
+def _judge_declared(package: str, old: str, bound: str) -> tuple[str, str, str]:
+    """What Debian's versions make of a bound from which on a library lacks a name of C++: `wrong`, `contradicted` with
+    the last version that has it and the first that has not, or nothing."""
+    libraries = load_libraries()
+    packages = (package, *map(libraries.find_by_package, DEBIAN_PACKAGES.get(package, ())))
+    library = next((one for one in packages if one and libraries.list_versions(one)), "")
+    has = [(version, old in _list_declared(library, platform))
+           for platform, version in (libraries.list_versions(library) if library else {}).items()]  # fmt: skip
+    against = [place for place, (version, there) in enumerate(has) if there and is_at_least(version, bound)]
+    if not against:
+        return "", "", ""
+    last = max(against)
+    return ("wrong", "", "") if last == len(has) - 1 else ("contradicted", has[last][0], has[last + 1][0])
+
+
+@cache
+def _list_declared(library: str, platform: str) -> frozenset[str]:
+    """The names that whoever includes the right header of a library on a platform has."""
+    return frozenset(
+        entity.name for entity in load_libraries().list_declared(library, platform)
+        if entity.kind != "using" and all(one.text.startswith("!defined(") != one.negated for one in entity.conditions)
+    )  # fmt: skip
 
 
 def _drop_read_from_pypi(group: dict[str, Any], count: Counter[tuple[str, str]]) -> Iterator[dict[str, Any]]:

@@ -88,6 +88,8 @@ class _Module:
             elif isinstance(node, ast.ImportFrom):
                 for alias in node.names:
                     name, module = alias.asname or alias.name, node.module or ""
+                    if name == "__getattr__":
+                        self.open.append((scope, "__getattr__"))
                     self.imports.append(
                         ImportedName(name, module, node.level, alias.name, node.lineno, scope, conditions)
                     )
@@ -183,6 +185,17 @@ class _Module:
             warning = "deprecated" if name in found.warned else ""
             self.names.append(Bound(name, "attribute", node.lineno, deprecated=warning, conditions=conditions))
 
+    def add_members_served(self, place: int, conditions: tuple[Condition, ...]) -> None:
+        """What a class that a decorator makes the module's `__getattr__` of serves: its members. place: where it stands
+        among the names."""
+        head = "__getattr__."
+        if any(scope == "__getattr__" for scope, _ in self.open):
+            self.open.append(("", "__getattr__"))
+        for bound in self.names[place:]:
+            if bound.name.startswith(head) and bound.name.count(".") == 1:
+                served = msgspec.structs.replace(bound, name=bound.name[len(head) :], kind="attribute", parameters=())
+                self.names.append(msgspec.structs.replace(served, conditions=conditions))
+
     def visit_function_body(self, node, scope: str, conditions: tuple[Condition, ...]) -> None:
         """What a function binds outside of itself: attributes of `self`, names that it declares global."""
         first = [*node.args.posonlyargs, *node.args.args][:1]
@@ -192,6 +205,9 @@ class _Module:
         stack: list[ast.AST] = list(reversed(node.body))
         while stack:
             at = stack.pop()
+            late = (*conditions, LATE)
+            self.names += (Bound(name, "attribute", getattr(at, "lineno", node.lineno), conditions=late)
+                           for name in _iterate_bound(at) if name in outside)  # fmt: skip
             if isinstance(at, ast.Global):
                 outside.update(at.names)
             elif isinstance(at, (ast.Assign, ast.AnnAssign, ast.AugAssign)):
@@ -208,7 +224,6 @@ class _Module:
                     elif isinstance(target, ast.Name) and of_module:
                         self.modules.add(target.id)
                     elif isinstance(target, ast.Name) and target.id in outside:
-                        late = (*conditions, LATE)
                         self.names.append(Bound(target.id, "attribute", at.lineno, conditions=late))
             elif isinstance(at, ast.Call):
                 self.visit_late_call(at, scope, me)
@@ -232,6 +247,8 @@ class _Module:
             if meta.rpartition(".")[2] not in ("ABCMeta", "EnumMeta", "type"):
                 self.open.append((name, f"metaclass {meta}"))
         self.visit_block(node.body, name, ())
+        if name == "__getattr__":
+            self.add_members_served(place, conditions)
         made = [bound.deprecated for bound in self.names[place:] if bound.name == f"{name}.__init__"]
         if any(made) and not self.names[place].deprecated:
             deprecated = next(filter(None, made))
@@ -249,6 +266,8 @@ class _Module:
             text = _format_literal(value)
             if isinstance(value, ast.Subscript) and _format_dotted(value.value) == "sys.modules":
                 self.modules.add(target.id)
+            if target.id == "__getattr__":
+                self.open.append((scope, "__getattr__"))
             self.names.append(Bound(name, "attribute", target.lineno, (), annotation, text, conditions=conditions))
             if value is not None:
                 self.visit_call_statement(value, scope)
@@ -370,6 +389,20 @@ class _Module:
 
 
 _INSIDE = (ast.stmt, ast.ExceptHandler, ast.Call, ast.withitem, ast.match_case)
+
+
+def _iterate_bound(node: ast.AST) -> Iterator[str]:
+    """The names that a statement binds otherwise than by an assignment."""
+    targets: list[ast.expr] = []
+    if isinstance(node, (ast.Import, ast.ImportFrom)):
+        yield from (alias.asname or alias.name.partition(".")[0] for alias in node.names)
+    elif isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+        yield node.name
+    elif isinstance(node, (ast.For, ast.AsyncFor)):
+        targets = [node.target]
+    elif isinstance(node, ast.withitem) and node.optional_vars is not None:
+        targets = [node.optional_vars]
+    yield from (target.id for target in _flatten_targets(targets) if isinstance(target, ast.Name))
 
 
 def _flatten_targets(targets: Iterable[ast.expr]) -> Iterator[ast.expr]:

@@ -14,6 +14,8 @@ from ..rules.packages.undeclared_needs import choose_name
 from ..rules.rule import Finding
 from ..targets.changes import iterate_in_force
 from ..targets.evidence import find_arrival
+from ..targets.platform import find_neighbours
+from ..targets.providers.libraries import load_libraries
 from ..targets.symbol import Availability, Symbol
 from ..targets.target import Provider
 from ..tree import JoinedTree
@@ -170,10 +172,26 @@ def _offer(view: TargetView, name: str, package: str, symbol: Symbol | None = No
         known = ((library, target.find_library(library)) for library in view.list_libraries(name))
         versions = ", ".join(f"{library} {version}" for library, version in known if version)
         note = f"{resolution.manager}: {' '.join(resolution.packages) or 'nothing to install'}"
-        return NameOffer("key", name, versions, "", note)
+        return NameOffer("key", name, versions, "", note + _tell_stand_ins(target.platform, resolution.packages))
     last = target.find_last_distro(name)
     note = f"not there; last seen in {last}" if last else f"not there ({package})" if package else "not there"
     return NameOffer("absent", name, "", "", note)
+
+
+def _tell_stand_ins(platform: str, packages: Sequence[str]) -> str:
+    """Which releases of Debian tell what the files of system packages hold on Ubuntu, of which only lists of files were
+    read. Empty for other platforms, and for packages that were read in no release."""
+    if not platform.startswith("ubuntu "):
+        return ""
+    libraries = load_libraries()
+    library = next(filter(None, map(libraries.find_by_package, packages)), "")
+    versions = libraries.list_versions(library) if library else {}
+    before, after = find_neighbours(platform, versions)
+    both = [f"{release} ({versions[release]})" for release in dict.fromkeys((before, after)) if release]
+    if not both:
+        return ""
+    where = ", where they agree" if len(both) == 2 else ", a later release" if after else ", an earlier release"
+    return f"; what its files hold is judged by {' and '.join(both)}{where}"
 
 
 def _tell_assumed(view: TargetView, package: str) -> str:

@@ -19,6 +19,7 @@ from ...edges.memory import cache_method
 from ..conditions.cmake import list_tested_packages
 from ..facts.condition import Condition
 from ..targets.changes import DISTROS
+from ..targets.platform import strip_to_letters
 from ..targets.symbol import Symbol
 from ..targets.target import Provider
 from ..targets.tree_nodes import load_tree_nodes
@@ -87,6 +88,9 @@ def make_sort_key(need: Need) -> tuple:
 # What a package that generates messages hands on to whoever uses them.
 _RUNTIMES = frozenset({"message_runtime", "message_generation", "rosidl_default_runtime"})
 _OF_INTERFACE = re.compile(r"[\w-]+/(?:[A-Z]\w*\.h|(?:msg|srv|action)/[a-z]\w*\.hpp)\Z")
+# The folders of generated headers and modules, by the kind of interface.
+_OF_KIND = ("msg/", "srv/", "action/")
+_NAME = re.compile(r"[a-z][a-z0-9_]*")
 _DEFINED = re.compile(r"\bDEFINED ENV\{(ROS_(?:DISTRO|VERSION|PYTHON_VERSION))\}")
 
 
@@ -166,6 +170,8 @@ class TargetView(WorkspaceOnTarget):
             if found.name == package.name or package.name in self.workspace.find_modules.get(found.name, ()):
                 continue
             providers = self.find_cmake(found.name) or self._guess_by_form(found.name, found.how == "catkin")
+            if not providers and found.required and self._may_be_package(package, found):
+                providers = (Provider("ros", found.name),)
             if not providers:
                 self.unresolved.add(UnresolvedUse(package.name, "cmake", found.name))
                 continue
@@ -190,8 +196,12 @@ class TargetView(WorkspaceOnTarget):
             if not providers:
                 path = include.path.lstrip("./")
                 known = path != include.path and self.find_header(path)
-                if not known and not self.offers.list_packages_with(path, self.build_environment(package)):
-                    self.unresolved.add(UnresolvedUse(package.name, "include", include.path))
+                if known or self.offers.list_packages_with(path, self.build_environment(package)):
+                    continue
+                made_apart = self.unknown_contents.is_made_apart(package, path)
+                providers = () if made_apart else self.guess_by_include(path)
+            if not providers:
+                self.unresolved.add(UnresolvedUse(package.name, "include", include.path))
                 continue
             if not providers[0].name:
                 continue  # the compiler has it, and nobody else is asked
@@ -278,6 +288,47 @@ class TargetView(WorkspaceOnTarget):
         if not PACKAGE.match(name) or not (sure or INTERFACES.search(name) or name in self.declared_somewhere):
             return ()
         return (Provider("ros", name),)
+
+    def guess_by_include(self, path: str) -> tuple[Provider, ...]:
+        """The package that an include of a header which nobody is known to have is of: by its form it is the header of
+        an interface, or its folder is called as what another manifest of the workspace declares."""
+        head, _, rest = path.partition("/")
+        of_interface = _OF_INTERFACE.match(path) and (INTERFACES.search(head) or rest.startswith(_OF_KIND))
+        if of_interface and _NAME.fullmatch(head):
+            return (Provider("ros", head),)
+        return (Provider("ros", head),) if rest and PACKAGE.match(head) and head in self.declared_somewhere else ()
+
+    def is_surely_package(self, package: Package, name: str) -> bool:
+        """Whether a name that nobody is known to provide is one of a package of ROS, by its form, by what a manifest of
+        the workspace declares, or since a package uses interfaces of it."""
+        return bool(self._guess_by_form(name)) or self._has_interfaces_of(package, name)
+
+    def _may_be_package(self, package: Package, found: FoundPackage) -> bool:
+        """Whether what CMake looks for, and nobody is known to provide, most likely is a package of ROS, and nothing is
+        known that could bring something else of its name: no find module, download, folder that was not read or that
+        CMake is pointed to, or dependency that is called after it."""
+        name, letters = found.name, strip_to_letters(found.name)
+        if self._has_interfaces_of(package, name):
+            return True
+        return (
+            PACKAGE.match(name) is not None
+            and not found.placed
+            and package.build_type in _TOOLS - {"cmake"}
+            and name not in self.workspace.find_modules
+            and not self.workspace.unread
+            and not package.build.builds_others
+            and not any(target.kind in ("external", "fetched") for target in package.build.targets)
+            and not any(letters in strip_to_letters(one) for one in self.build_environment(package))
+        )
+
+    @cache_method
+    def _has_interfaces_of(self, package: Package, name: str) -> bool:
+        """Whether a package includes or imports interfaces of a name, as only packages of ROS have them."""
+        folders = tuple(f"{name}/{kind}" for kind in _OF_KIND)
+        if any(use.path.startswith(folders) and _OF_INTERFACE.match(use.path) for use in package.linked.includes):
+            return True
+        modules = tuple(f"{name}.{kind.rstrip('/')}" for kind in _OF_KIND)
+        return any(item.module.startswith(modules) for item in package.linked.imports)
 
     @cached_property
     def declared_somewhere(self) -> frozenset[str]:

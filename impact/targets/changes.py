@@ -13,6 +13,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Mapping
 from functools import cache, lru_cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import msgspec
@@ -149,7 +150,10 @@ def _load_files() -> list[_File]:
     it is taken from the other. What was read from packages comes last, since nobody reviewed it; before it the general
     table, since the others were compared with headers and tags."""
     return _read(
-        "changes*.json*", "changes.json", "changes_debian.json.zst", "changes_library_tags.json.zst",
+        "changes*.json*",
+        "changes.json",
+        "changes_debian.json.zst",
+        "changes_library_tags.json.zst",
         "changes_pypi.json.zst",
     )
 
@@ -158,22 +162,33 @@ def _get_shared_fields(group: _Group) -> dict:
     return {name: getattr(group, name) for name in _Shared.__struct_fields__}
 
 
+def _list_rows(file: _File) -> Iterator[ChangeRow]:
+    for group in file.changes:
+        shared = _get_shared_fields(group)
+        yield from (ChangeRow(old=old, new=new, **shared) for old, new in group.names.items())
+
+
+def read_rows(path: Path) -> tuple[ChangeRow, ...]:
+    """The known changes of names in one file. Raises SnapshotError when it cannot be read."""
+    return tuple(_list_rows(read_table(path, _File)))
+
+
 @cache
 def load_rows() -> tuple[ChangeRow, ...]:
     """Every known change of names. Raises SnapshotError when the data file cannot be read."""
     known: dict[tuple[str, str, str, int], ChangeRow] = {}
-    for group in (group for file in _load_files() for group in file.changes):
-        shared = _get_shared_fields(group)
-        for old, new in group.names.items():
-            row = ChangeRow(old=old, new=new, **shared)
-            first = known.setdefault((row.kind, row.package, old, row.ros), row)
-            if first is not row:
-                both = tuple(dict.fromkeys(first.unless + row.unless))
-                since = first.new_since or (row.new_since if new == first.new else "")
-                bounds = {} if first.removed_in or first.deprecated_in else {b: getattr(row, b) for b in _BOUNDS}
-                merged = msgspec.structs.replace(first, **{"unless": both, "new_since": since, **bounds})
-                known[row.kind, row.package, old, row.ros] = merged
+    for row in (row for file in _load_files() for row in _list_rows(file)):
+        key = row.kind, row.package, row.old, row.ros
+        known[key] = merge_rows(known[key], row) if key in known else row
     return tuple(known.values())
+
+
+def merge_rows(first: ChangeRow, row: ChangeRow) -> ChangeRow:
+    """A row with what a less special one on the same name adds."""
+    both = tuple(dict.fromkeys(first.unless + row.unless))
+    since = first.new_since or (row.new_since if row.new == first.new else "")
+    bounds = {} if first.removed_in or first.deprecated_in else {bound: getattr(row, bound) for bound in _BOUNDS}
+    return msgspec.structs.replace(first, **{"unless": both, "new_since": since, **bounds})
 
 
 _BOUNDS = ("last_in", "removed_in", "deprecated_in")

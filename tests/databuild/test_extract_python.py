@@ -49,7 +49,14 @@ def shown(parameter):
         ("if __name__ == '__main__':\n  a = 1", []),
         ("class A: pass\nA.b = 1", [("A", "class"), ("A.b", "attribute")]),
         ("def f():\n  global state\n  state = 1\n  other = 2", [("f", "function"), ("state", "attribute")]),
+        ("def f():\n  global os, low\n  import os.path\n  from x import high as low, other",
+         [("f", "function"), ("os", "attribute"), ("low", "attribute")]),
+        ("def f():\n  global a, b, C, d\n  for a in x: pass\n  with x as (b, c): pass\n  class C: ...\n  def d(): ...",
+         [("f", "function"), *((name, "attribute") for name in "abCd")]),
         ("globals()['a'] = 1", [("a", "attribute")]),
+        ("@make\nclass __getattr__:\n  late = warn(3)\n  @property\n  def soon(self): ...",
+         [("__getattr__", "class"), ("__getattr__.late", "attribute"), ("__getattr__.soon", "property"),
+          ("late", "attribute"), ("soon", "attribute")]),
     ],
 )  # fmt: skip
 def test_names_that_are_bound(text, expected):
@@ -194,6 +201,13 @@ def test_what_a_module_getattr_serves(body, served):
     ("text", "expected"),
     [
         ("def __getattr__(name): pass", [("", "__getattr__")]),
+        ("__getattr__, *rest = serve(x)", [("", "__getattr__")]),
+        ("from x import serve as __getattr__", [("", "__getattr__")]),
+        (
+            "@make\nclass __getattr__:\n  locals().update(x)",
+            [("__getattr__", "locals().update()"), ("", "__getattr__")],
+        ),
+        ("@make\nclass __getattr__:\n  late = warn(lambda self: 1)", []),
         ("class A:\n  def __getattr__(self, n): pass", [("A", "__getattr__")]),
         ("globals().update(x)", [("", "globals().update()")]),
         ("globals()[n] = 1", [("", "globals()[...]")]),

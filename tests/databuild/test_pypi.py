@@ -1,17 +1,24 @@
 """What versions of a library on PyPI lost or deprecate, told from wheels."""
 
+import subprocess
 import zipfile
+from pathlib import Path
 
 import pytest
 from rosimpact.databuild.pypi import (
+    FILE,
     MovedNames,
     OfferedNames,
     find_losses,
     group_losses,
     group_moved,
+    main,
     read_versions,
     read_wheel,
 )
+from rosimpact.databuild.table_file import write_table
+from rosimpact.edges.console import UserError
+from rosimpact.impact.targets.unpacked import read_table
 
 
 def make_release(folder, version, files):
@@ -64,6 +71,13 @@ def __getattr__(name):
         ({INIT: "def move(): ..."}, {INIT: "type x = ?"}, {}),
         ({INIT: "move = 1"}, {INIT: "", "arm/_own.py": "import arm\narm.move = 2"}, {}),
         ({INIT: "def move(): ..."}, {INIT: "__all__ = ['move']"}, {}),
+        ({INIT: "def move(): ..."}, {INIT: "__getattr__, *_ = serve(__name__)"}, {}),
+        # lazy_loader serves what the stub imports from the package, and that alone.
+        ({INIT: "def move(): ...\ndef turn(): ..."},
+         {INIT: "import lazy_loader as lazy\n__getattr__, *_ = lazy.attach_stub(__name__, __file__)",
+          STUB: "from .way import move", "arm/way.py": "def move(): ...\ndef turn(): ..."},
+         {"arm.turn": ("1.1", "")}),
+        ({INIT: "def move(): ..."}, {INIT: "def load():\n    global move\n    from fast import move"}, {}),
         # `__getattr__` lists what it raises for, here or in a module beside it.
         ({INIT: "MOVE = 1"}, {INIT: REFUSES.format(table="GONE = {'MOVE': 'use go'}\nfrom elsewhere import *")},
          {"arm.MOVE": ("1.1", ""), "arm.late": ("", "1.1")}),
@@ -155,3 +169,67 @@ def test_versions_between_are_read_where_something_went(tmp_path):
 def test_what_has_no_wheel_is_left_out(tmp_path):
     read = read_versions(["1.0.0", "1.2.0"], ["1.0.0", "1.1.0", "1.2.0"], lambda version: None)
     assert read == []
+
+
+def test_versions_between_without_a_wheel_are_passed_over(tmp_path):
+    without = {"1.5.0", "1.4.0"}
+
+    def load(version):
+        if version in without:
+            return None
+        return make_release(tmp_path, version, {INIT: "def move(): ..."} if version < "1.6" else {})
+
+    available = [f"1.{minor}.0" for minor in range(9)]
+    read = [one.release.version for one in read_versions(["1.1.0", "1.8.0"], available, load)]
+    assert {"1.3.0", "1.6.0"} <= set(read) and not without & set(read)
+
+
+@pytest.fixture
+def pip(monkeypatch, tmp_path):
+    """Stands in for pip: it has wheels of each project from 1.0 to 1.2 but of those in `fails`. Returns that."""
+    fails = set()
+
+    def run(command, **_):
+        asked = command[command.index("--disable-pip-version-check") + 1 :]
+        project, _, version = asked[-1].partition("==")
+        if project in fails:
+            return subprocess.CompletedProcess(command, 1, "", "ERROR: connection reset")
+        if asked[0] == "index":
+            return subprocess.CompletedProcess(command, 0, "Available versions: 1.2, 1.1, 1.0", "")
+        if version == "0.dev0":
+            said = "(from versions: 1.0, 1.1, 1.2)\nERROR: No matching distribution found"
+            return subprocess.CompletedProcess(command, 1, "", said)
+        make_release(
+            Path(asked[asked.index("--dest") + 1]), version, {INIT: "" if version > "1.1" else "def move(): ..."}
+        )
+        return subprocess.CompletedProcess(command, 0, "", "")
+
+    monkeypatch.setattr("rosimpact.databuild.pypi.subprocess.run", run)
+    monkeypatch.setattr("rosimpact.databuild.pypi.PROJECTS", {"hand": "hand", "foot": "foot"})
+    monkeypatch.setattr("rosimpact.databuild.pypi.MOVED", {})
+    monkeypatch.setattr("rosimpact.databuild.pypi.list_platform_versions", lambda library: ["1.1", "1.2", "1.7"])
+    return fails
+
+
+def test_a_library_that_cannot_be_read_keeps_its_rows(pip, tmp_path, capsys):
+    write_table(tmp_path / FILE, {"changes": [{"package": name, "names": {"old": ""}} for name in ("foot", "hand")]})
+    pip.add("hand")
+    main([str(tmp_path / "work"), "--output", str(tmp_path)])
+    rows = {(group["package"], *group["names"]) for group in read_table(tmp_path / FILE, dict)["changes"]}
+    assert rows == {("foot", "arm.move"), ("hand", "old")}
+    printed = capsys.readouterr().out
+    assert "foot: 3 versions read, 1 names; no wheel of 1.7" in printed
+    assert "hand: not read: pip index versions" in printed
+    assert printed.splitlines()[-1] == "1 of 2 libraries read; not read: hand"
+    # A later run goes on with what is lacking alone.
+    pip.clear()
+    main([str(tmp_path / "work"), "--output", str(tmp_path)])
+    assert capsys.readouterr().out.splitlines()[-3].startswith("3 wheels downloaded")
+
+
+def test_where_nothing_can_be_read_the_table_stays(pip, tmp_path):
+    write_table(tmp_path / FILE, {"changes": []})
+    pip.update(("hand", "foot"))
+    with pytest.raises(UserError, match="none of 2 libraries could be read"):
+        main([str(tmp_path / "work"), "--output", str(tmp_path)])
+    assert read_table(tmp_path / FILE, dict) == {"changes": []}

@@ -65,16 +65,64 @@ def test_a_bound_is_the_first_stored_version_without_the_name(kind, package, old
 )  # fmt: skip
 def test_what_becomes_of_a_group(group, verdicts, left, tmp_path):
     file = tmp_path / "changes.json"
-    file.write_text(json.dumps({"changes": [group]}))
+    file.write_text(json.dumps({"changes": [{"source": "its change log", **group}]}))
     content, count = drop_superseded(file)
     assert [verdict for _, verdict in count] == verdicts
     assert [(one["removed_in"], one["ros"]) for one in content["changes"]] == left
 
 
+def drop_library(tmp_path, name="changes_libraries.json", **group):
+    """What becomes of a group of rows on a library: verdicts, and (names, bounds) of the groups that are left."""
+    file = tmp_path / name
+    file.write_text(json.dumps({"changes": [{"source": "its change log", "library": True, **group}]}))
+    content, count = drop_superseded(file)
+    left = [(list(one["names"]), {key: one[key] for key in ("last_in", "removed_in", "deprecated_in") if key in one})
+            for one in content["changes"]]  # fmt: skip
+    return {verdict for _, verdict in count if verdict != "unknown"}, left
+
+
+@pytest.mark.parametrize(
+    ("package", "bound", "names", "verdicts", "left"),
+    [
+        # Debian's newest version declares it.
+        ("opencv", {"removed_in": "4.0"}, ["cv::estimateRigidTransform"], {"wrong"}, []),
+        ("ffmpeg-libavcodec", {"removed_in": "8.0"}, ["av_buffersrc_get_status", "av_no_such_name"], {"wrong"},
+         [(["av_no_such_name"], {"removed_in": "8.0"})]),
+        # It was deprecated before, which stands; and so does each way to spell it.
+        ("boost", {"removed_in": "1.87", "deprecated_in": "1.66"}, ["boost::asio::null_buffers", "asio::null_buffers"],
+         {"wrong"}, [(["boost::asio::null_buffers", "asio::null_buffers"], {"deprecated_in": "1.66"})]),
+        # 1.74 and 1.83 have it, 1.92 has not.
+        ("boost", {"removed_in": "1.70"}, ["boost::asio::basic_io_object::get_io_service"], {"contradicted"},
+         [(["boost::asio::basic_io_object::get_io_service"], {"last_in": "1.83.0", "removed_in": "1.92.0"})]),
+        # One header takes it over from `std`; no other has it.
+        ("pcl", {"removed_in": "1.12"}, ["pcl::uint32_t"], set(), [(["pcl::uint32_t"], {"removed_in": "1.12"})]),
+        # It is as the row says, or of a library that was not read.
+        ("ceres", {"removed_in": "2.2"}, ["ceres::LocalParameterization"], set(),
+         [(["ceres::LocalParameterization"], {"removed_in": "2.2"})]),
+        ("gazebo-classic", {"removed_in": "9.0"}, ["cv::Mat"], set(), [(["cv::Mat"], {"removed_in": "9.0"})]),
+    ],
+)  # fmt: skip
+def test_what_debian_declares_is_not_gone(package, bound, names, verdicts, left, tmp_path):
+    group = {"kind": "api-removed", "package": package, **bound, "names": dict.fromkeys(names, "")}
+    assert drop_library(tmp_path, **group) == (verdicts, left)
+
+
+@pytest.mark.parametrize(
+    ("more", "verdicts"), [({}, {"twice"}), ({"unless": ["fcl/old.h"]}, set()), ({"package": "fcl_of_ours"}, set())]
+)
+def test_what_a_more_special_table_says_too_goes(more, verdicts, tmp_path):
+    group = {"kind": "header-removed", "package": "fcl", "removed_in": "0.6", "names": {"fcl/collision.h": ""}, **more}
+    found, left = drop_library(tmp_path, "changes.json", **group)
+    assert (found, bool(left)) == (verdicts, not verdicts)
+    # It is the general table alone that gives way.
+    assert drop_library(tmp_path, **group) == (set(), [(["fcl/collision.h"], {"removed_in": "0.6"})])
+
+
 @pytest.mark.parametrize("file", sorted(DATA.glob("changes*.json*")), ids=lambda path: path.name)
 def test_no_shipped_row_is_answered_by_the_surfaces(file):
     _, count = drop_superseded(file)
-    assert not [(kind, verdict) for kind, verdict in count if verdict in ("answered", "contradicted", "wrong", "bare")]
+    gone = ("answered", "contradicted", "wrong", "bare", "twice")
+    assert not [(kind, verdict) for kind, verdict in count if verdict in gone]
 
 
 def test_no_name_has_two_rows_that_say_the_same():

@@ -8,7 +8,10 @@ from pathlib import Path
 import pytest
 import yaml
 import zstandard
+from rosimpact.databuild.everything import STEPS
 from rosimpact.impact.targets.changes import load_rows, load_transitive
+from rosimpact.impact.targets.platform import CODENAMES, find_neighbours
+from rosimpact.impact.targets.providers.libraries import load_libraries
 from rosimpact.impact.targets.surface.store import load_shipped
 from rosimpact.impact.targets.tables import DATA
 
@@ -105,6 +108,22 @@ def test_library_versions_are_counted():
 def test_known_changes_are_about_as_many(said, count):
     found = re.search(said, CARD)
     assert found and int(found[1].replace(",", "")) == pytest.approx(count(), rel=0.1)
+
+
+def test_the_steps_of_the_build_are_all_on_the_card():
+    table = CARD[CARD.index("| step | makes |") :].partition("\n\n")[0].splitlines()[2:]
+    said = [tuple(cell.strip() for cell in row.split("|")[1:3]) for row in table]
+    assert said == [(f"`{step.name}`", ", ".join(f"`{file}`" for file in step.makes)) for step in STEPS]
+
+
+def test_which_releases_of_debian_stand_for_one_of_ubuntu():
+    releases = load_libraries().list_versions("boost")
+    said = {}
+    for names, judges in re.findall(r"^\| (ubuntu \w+(?:, ubuntu \w+)*) \| (debian [\w, ]+) \|$", CARD, re.MULTILINE):
+        found = tuple(re.findall(r"debian \w+", judges))
+        said |= dict.fromkeys(names.split(", "), ("", *found) if "a later release" in judges else found)
+    known = {name: find_neighbours(name, releases) for name in CODENAMES.values() if name.startswith("ubuntu ")}
+    assert said == {name: both for name, both in known.items() if any(both)}
 
 
 @pytest.mark.parametrize(

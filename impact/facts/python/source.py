@@ -4,6 +4,7 @@ import ast
 import codecs
 import re
 import warnings
+from collections.abc import Iterable
 from functools import lru_cache
 from operator import attrgetter
 from typing import NamedTuple
@@ -169,6 +170,24 @@ def read(data: bytes) -> PythonSource:
         return PythonSource(text, rewritten, tree, old, problems)
 
 
+# How a robot description is written: by xacro, which is given where to, or as any file.
+_WRITES = re.compile(
+    r"\bxacro\b.{0,300}?[\s\"'](?:-o|--output)[\s\"'=]|\bopen\([^\n]*,\s*(?:mode=)?[\"'][wx]", re.DOTALL
+)
+_DESCRIPTION = (".urdf", ".sdf", ".srdf")
+
+
+def _sort_references(text: str, references: Iterable[Reference]) -> tuple[Reference, ...]:
+    """References in the order of the source. Where it writes descriptions, those that it names may be made by it, so
+    that nothing needs to be there."""
+    if _WRITES.search(text):
+        references = (
+            msgspec.structs.replace(one, conditional=True) if one.name.endswith(_DESCRIPTION) else one
+            for one in references
+        )
+    return tuple(sorted(references, key=attrgetter("line", "column")))
+
+
 def extract(data: bytes) -> PythonFile:
     """The facts of one Python file. Never raises.
 
@@ -191,7 +210,7 @@ def extract(data: bytes) -> PythonFile:
             return PythonFile(
                 imports=tuple(reader.imports),
                 attributes=reader.list_attributes(),
-                references=tuple(sorted((*reader.references, *by_distro), key=attrgetter("line", "column"))),
+                references=_sort_references(text, (*reader.references, *by_distro)),
                 python2_only=old or tuple(reader.python2_only),
                 needs=undecoded or (None if old else reader.needs),
                 interpreter=interpreter,

@@ -35,7 +35,8 @@ class FoundPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     conditions: everything the call stands under, outermost first. at is the argument's own place.
     prefix: the variable or variable prefix of pkg_check_modules and find_library; its further names are in
     optional_components. via: the command of another package that looks for it (`moveit_package`), empty when this
-    package asks itself; at is then the call of that command.
+    package asks itself; at is then the call of that command. placed: the package says where it lies, by a variable or
+    an argument.
     """
 
     name: str
@@ -50,6 +51,7 @@ class FoundPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     prefix: str = ""
     conditions: tuple[Condition, ...] = ()
     via: str = ""
+    placed: bool = False
 
 
 class DefinedMacro(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -118,7 +120,7 @@ class Install(msgspec.Struct, frozen=True, array_like=True, gc=False):
     export set that targets are put into. namespace: of an export. includes: INCLUDES DESTINATION of targets.
     executable: a folder whose files keep, or are given, the permission to be executed. rewritten: the first line of
     programs in Python is made to name the interpreter that the package is built with. optional: files that need not be
-    there."""
+    there. guessed: the destination of files rests on a value that is not known, or differs between branches."""
 
     kind: str
     items: tuple[str, ...]
@@ -134,6 +136,7 @@ class Install(msgspec.Struct, frozen=True, array_like=True, gc=False):
     executable: bool = False
     rewritten: bool = False
     optional: bool = False
+    guessed: bool = False
 
 
 class CMakeExport(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -11,6 +11,7 @@ from collections.abc import Iterable
 
 from ....edges.memory import cache_method
 from ....edges.reach import walk
+from ...targets.platform import strip_separators
 from ..view import TargetView
 from ..workspace import Package
 from .links import is_opaque, resolve_package
@@ -41,16 +42,17 @@ class CatkinExports:
         return tuple(lib for lib in offer.build.libraries if "$" not in lib) if offer is not None else ()
 
     def may_bring(self, name: str, library: str) -> bool:
-        """Whether a part of a library, in lower case, may be among what a package itself hands on."""
+        """Whether a part of a library's name may be among what a package itself hands on, however it is written."""
+        word = strip_separators(library)
         package = self._view.workspace.packages.get(name)
         if package is not None:
             given = [e.item for e in package.build.exports if e.how in ("system_depends", "libraries")]
-            return any("$" in item or library in item.lower() for item in given)
+            return any("$" in item or word in strip_separators(item) for item in given)
         offer = self._view.offers.find_package(name)
         if offer is None:
             return name not in BRING_NOTHING and not _INTERFACES.search(name)
         given = (*offer.build.system, *offer.build.libraries, *(why for _, why in offer.build.unknown))
-        return any(library in item.lower() for item in given)
+        return any(word in strip_separators(item) for item in given)
 
     def list_transitive(self, names: Iterable[str]) -> frozenset[str] | None:
         """These packages and all that they bring; None where that of one is not known."""

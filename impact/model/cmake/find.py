@@ -92,6 +92,10 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
             run.extend(component, component.at)
     if sought:
         run.renamed.add(str(name))
+    placed = not {"HINTS", "PATHS"}.isdisjoint(rest) or any(
+        (held := run.get(variable)) is not None and held.text
+        for variable in (f"{name}_DIR", f"{name}_ROOT", "CMAKE_PREFIX_PATH")
+    )
     for one in split_words(sought) or ([name] if name != "catkin" else []):
         if is_unknown(one):
             continue
@@ -109,6 +113,7 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
                 tuple(str(component) for component in optional),
                 "",
                 conditions,
+                placed=placed,
             )
         )
     if not (sought or flags & {"CONFIG", "NO_MODULE"}):

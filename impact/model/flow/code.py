@@ -12,6 +12,7 @@ from typing import Generic, NamedTuple, TypeVar
 
 from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
+from ...facts.cpp.flow_values import ELEMENTS
 from ...facts.flow import (
     Alias,
     Assignment,
@@ -31,8 +32,14 @@ _Row = TypeVar("_Row", bound=tuple)
 
 
 _HEADERS = (".h", ".hpp", ".hh", ".hxx")
-# Bases that call no method of what derives from them by a name of their own.
-_CALL_NOTHING = frozenset(("Node", "object", "Object"))
+# Bases outside of the code, with the methods of what derives from them that they call.
+_CALLED_BY = {
+    "Node": frozenset[str](), "object": frozenset[str](), "Object": frozenset[str](), "Thread": frozenset(("run",)),
+    "LifecycleNode": frozenset(
+        ("on_configure", "on_activate", "on_deactivate", "on_cleanup", "on_shutdown", "on_error")
+    ),
+    "enable_shared_from_this": frozenset[str](), "Nodelet": frozenset(("onInit",)),
+}  # fmt: skip
 # Methods of strings that change them; algorithms that write where they are pointed to; those of Boost's string library.
 _CHANGE_STRING = frozenset(("insert", "erase", "replace", "push_back", "pop_back", "assign", "clear", "resize", "swap"))
 _CHANGE_RANGE = frozenset(("transform", "replace", "replace_if", "remove", "remove_if", "reverse", "rotate", "fill"))
@@ -979,9 +986,16 @@ class FlowCode:
         owner = self.find_owner(fn)
         if owner is None or fn.is_lambda or not name.isidentifier() or name[:2] == name[-2:] == "__":
             return True
-        bases = {get_tail(base) for cls in self.list_bases(owner) for base in cls.facts.bases}
-        others = {base for base in bases if base not in self.classes and base not in _CALL_NOTHING}
-        return bool(others) or name in self.mentioned or name == get_tail(owner.name)
+        if name in ELEMENTS:
+            return True  # facts have an element for such a call
+        return not self.is_called_by_code(owner, name) or name in self.mentioned or name == get_tail(owner.name)
+
+    @cache_method
+    def is_called_by_code(self, cls: Cls, name: str) -> bool:
+        """Whether nothing but the code calls a method of a class: all of its bases are in the code, or are known not to
+        call it."""
+        bases = {get_tail(parse_flow_type(base).name) for one in self.list_bases(cls) for base in one.facts.bases}
+        return all(base in self.classes or (base in _CALLED_BY and name not in _CALLED_BY[base]) for base in bases)
 
     def is_idle(self, fn: Fn) -> bool:
         """Whether a function is a method that nothing calls, of a class that nobody else can call methods of, and that
@@ -989,8 +1003,7 @@ class FlowCode:
         owner, name = self.find_owner(fn), get_tail(fn.facts.name)
         if owner is None or fn.is_lambda or self.is_constructor(fn) or name in self.handed_on:
             return False
-        bases = {get_tail(base) for cls in self.list_bases(owner) for base in cls.facts.bases}
-        return not self.callers.get(fn) and all(base in self.classes or base in _CALL_NOTHING for base in bases)
+        return not self.callers.get(fn) and self.is_called_by_code(owner, name)
 
     @cached_property
     def handed_on(self) -> frozenset[str]:

@@ -43,10 +43,12 @@ _Known = list[tuple[Any, frozenset[How]]]
 
 class DecidedCondition(NamedTuple):
     """holds: None where that cannot be known. hows: how the values are known that it rests on; of a condition that may
-    hold or not, none where one of its values is not known at all."""
+    hold or not, none where one of its values is not known at all. asks_open: it asks for a parameter that nothing known
+    gives a value."""
 
     holds: bool | None = None
     hows: frozenset[How] = frozenset()
+    asks_open: bool = False
 
     @property
     def is_given(self) -> bool:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from ...facts.flow import FlowCall
 from .code import FlowCode, Fn, Made, Variable
+from .makers import leave_out_passed_over
 from .reaching import LOOPS
 from .types import Cls
 from .values import FlowValues
@@ -131,7 +132,6 @@ class Contexts:
         """Who gives the constructors of a class, and of its bases, their arguments in some objects. chain: the class
         with its bases; rows: where the objects are made, None for anywhere."""
         keys = {one.key for one in chain}
-        above: set[Fn] = set()
         made: dict[Fn, list[Made]] = {}
         for one in chain:
             for fn in self.code.list_functions(one):
@@ -142,12 +142,13 @@ class Contexts:
                 inside = [row for row in every if (owner := self.code.find_owner(row[0])) and owner.key in keys]
                 if rows is not None:
                     inside = [row for row in inside if self._may_begin(row[0], chain[0], rows)]
-                own = self._list_own_constructed(fn, chain[0]) if rows is None else rows
+                if rows is not None:
+                    own = rows
+                else:
+                    # Other classes that derive from a base make none of these objects.
+                    own = self._list_own_constructed(fn, chain[0]) if one is chain[0] or not inside else ()
                 made[fn] = [*inside, *(row for row in own if row in every and row not in inside)]
-                if one is not chain[0] and not made[fn]:
-                    above.add(fn)
-        # A base's constructor that hands on to another one is not run where derived classes call that one.
-        return {fn: [row for row in found if row[0] not in above] or found for fn, found in made.items()}
+        return leave_out_passed_over(made, self.code.list_functions(chain[0]))
 
     def _list_own_constructed(self, fn: Fn, cls: Cls) -> list[Made]:
         """Where objects of a class itself are made by one of its constructors, and not those that derive from it; all

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from ...facts.flow import Assignment, FlowCall, FlowExpr
 from .code import FlowCode, Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number
 from .reaching import LOOPS
+from .variable_tests import read_variable_test
 
 SETTING = "setting"
 """The kind of an expression that stands for the value of a parameter as a launch gives it."""
@@ -33,6 +34,8 @@ _OF_DICTIONARIES = {"keys": 0, "values": 1}
 # In a pair of C++.
 _MEMBERS = {"first": 0, "second": 1}
 
+# Facts have so much of a source that is not followed.
+_LONGEST = 118
 # Ends the path of an element at a place that is a variable.
 _ANY = ".[]"
 _BEGIN = re.compile(r"(.+)\.c?begin")
@@ -40,11 +43,13 @@ _COUNTS = re.compile(r"(\w+) (<=?) (\d{1,4})")
 
 
 class ListElement(NamedTuple):
-    """An expression where it stands."""
+    """An expression where it stands. only_if: the condition under which it is among the elements, empty where it surely
+    is."""
 
     value: FlowExpr
     fn: Fn
     line: int
+    only_if: str = ""
 
 
 class HeldList(NamedTuple):
@@ -171,7 +176,7 @@ class Elements:
             return self._list_joined(value, fn, line, depth)
         if value.kind == "other" and len(value.parts) == 1 and value.text[:1] in ("[", "("):
             # `[... for each in ...]`
-            return [HeldList((ListElement(value.parts[0], fn, line),), False)]
+            return [HeldList((ListElement(value.parts[0], fn, line, _spell_filters(value, fn, line)),), False)]
         return None
 
     def _list_made(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[HeldList] | None:
@@ -217,7 +222,7 @@ class Elements:
             lists = self._list_held(one.value, one.fn, one.line, depth + 1)
             if lists is None or len(found) > _MOST:
                 return None
-            found += lists
+            found += [_put_under(each, one.only_if) for each in lists]
         return found
 
     def _list_called(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[HeldList] | None:
@@ -375,6 +380,28 @@ def select_reaching(
         if each.key is None and each.operator in ("=", "for") and (each.guard < 0 or each.guard in guards)
     ]  # fmt: skip
     return [(fn, each) for each in before if each.line >= max(sure, default=0)]
+
+
+def _put_under(held: HeldList, condition: str) -> HeldList:
+    """A list whose elements are there under one more condition."""
+    if not condition:
+        return held
+    elements = (one._replace(only_if=" && ".join(filter(None, (one.only_if, condition)))) for one in held.elements)
+    return held._replace(elements=tuple(elements))
+
+
+def _spell_filters(value: FlowExpr, fn: Fn, line: int) -> str:
+    """The conditions of a comprehension on a line, but for those that ask for an element alone, which its values are
+    held against."""
+    rows, found = fn.facts.guards, list[str]()
+    for row in rows:
+        outer = rows[row.outer] if row.outer >= 0 else None
+        inside = outer is not None and outer.kind in (*LOOPS, "if") and outer.line >= line
+        near = line <= row.line <= line + len(value.text) // 8
+        here = near and (row.text in value.text or len(value.text) >= _LONGEST)
+        if row.kind == "if" and inside and here and read_variable_test(row, False) is None:
+            found.append(row.text)
+    return " && ".join(dict.fromkeys(found))
 
 
 def _join_held(held: Iterable[HeldList]) -> list[ListElement]:

@@ -27,8 +27,18 @@ from .handles import NodeHandles, join_spaces
 from .modules import CodeFile
 from .outside_constants import OutsideConstants
 from .templates import Templates
+from .turn_conditions import TurnConditions
 from .types import find_header_interface, find_interface, parse_flow_type
-from .values import LOST, WHICH_TURN, FlowValue, FlowValues, join_opposites, make_sibling
+from .values import (
+    LOST,
+    WHICH_TURN,
+    FlowValue,
+    FlowValues,
+    join_opposites,
+    make_sibling,
+    put_under_more,
+    spell_condition,
+)
 
 _NOT_YET = frozenset(("", "None", "nullptr"))
 _CONNECTS = ("connectInput", "reset")
@@ -167,6 +177,7 @@ class Sites:
         self.code, self.calls, self.values, self.defined = code, calls, values, defined
         self.templates = Templates(code)
         self.handles, self.contexts = NodeHandles(calls), Contexts(code)
+        self.turns = TurnConditions(code)
         values.find_prefix = self.find_prefix
         values.find_outside_text = self.find_outside_text
 
@@ -242,6 +253,36 @@ class Sites:
         """The namespace of the node handle that makes an endpoint, and what its name may be, before the node's own.
         Where there are several namespaces, it is empty, and the names have theirs. values: what expressions are worth
         where it runs."""
+        prefix, names = self._find_names(use, values)
+        return prefix, self._put_under_turns(use, names, values) if len(names) > 1 else names
+
+    def _put_under_turns(
+        self, use: FrameworkCall, names: tuple[FlowValue, ...], values: FlowValues
+    ) -> tuple[FlowValue, ...]:  # fmt: skip
+        """Names of several elements of a list, without those for which a condition in the loop does not hold; those for
+        which that is not known are under it."""
+        filters = " && ".join(self.turns.list_filters(use.fn, use.call.guard))
+        if filters:
+            names = tuple(put_under_more(names, filters))
+        asked = self.turns.list_asked(use.fn, use.call.guard)
+        if not asked:
+            return names
+        guards = [use.fn.facts.guards[place] for place in asked]
+        condition = " && ".join(spell_condition(guard.kind, guard.text) for guard in guards)
+        open_: dict[FlowValue, None] = {}
+        sure: dict[FlowValue, None] = {}
+        ways = self.contexts.list_contexts(use.fn, use.call.guard, values)
+        for way in ways if len(ways) > 1 else ():
+            decided = [next(way.decide_guards(use.fn, place))[1].holds for place in asked]
+            if False not in decided:
+                found = self._find_names(use, way)[1]
+                (open_ if None in decided else sure).update(dict.fromkeys(found))
+        if not open_ and not sure:
+            return tuple(put_under_more(names, condition))
+        left = [name for name in names if name in sure]
+        return (*left, *put_under_more((name for name in names if name in open_ and name not in sure), condition))
+
+    def _find_names(self, use: FrameworkCall, values: FlowValues) -> tuple[str, tuple[FlowValue, ...]]:
         inside = values.limit_to_class(use.fn)
         spaces, names = self._list_spaces(use, inside), self._list_written_names(use, inside)
         if len(spaces) > 1 or len(names) > 1 or any(one.reason == WHICH_TURN for one in names):
@@ -761,9 +802,9 @@ class Sites:
             if place is None:
                 continue
             given = self.code.list_given(one, place[0], name)
-            return list(dict.fromkeys(
-                body for value, giver in given for body in self.list_bodies(value, giver, use, depth + 1)
-            ))
+            return list(
+                dict.fromkeys(body for value, giver in given for body in self.list_bodies(value, giver, use, depth + 1))
+            )
         return []
 
     def _list_functions(self, name: str, fn: Fn) -> list[Fn]:

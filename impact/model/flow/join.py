@@ -17,6 +17,7 @@ from ...facts.flow import FlowCall, FlowExpr, FlowFile, Guard
 from ..launch.result import EMPTY, Launched, ShareLine, Started
 from ..launch.text import LaunchText
 from . import nodes as programs_of
+from .called import CalledFunctions
 from .calls import FOREIGN, Calls, FrameworkCall
 from .code import CodeFile, FlowCode, Fn, find_argument, find_parameter, get_tail, list_made
 from .defined import DefinedInterfaces
@@ -148,6 +149,7 @@ class Join:
         self.objects = NodeObjects(self.calls, self.values, ros)
         self.hosts = PluginHosts(self.calls, self.plugins)
         self.triggers = group_pairs(self._list_triggers())
+        self.called = CalledFunctions(self.code)
         # Of a use it is the same in every node that runs it.
         self._qos: dict[int, Qos | None] = {}
         self._asked: dict[int, list[FlowValue]] = {}
@@ -156,6 +158,8 @@ class Join:
         # By the use: who runs it, whether another may share it who runs other functions, on what it rests, and what it
         # is then. Who runs it keeps the ids in the key from being reused.
         self._sites_of: dict[tuple, list[tuple[Running, bool, Work, Site]]] = {}
+        # By the id() of the functions that a node reaches, which are kept for that: those of them that are called.
+        self._called_of: dict[int, tuple[set[Fn], frozenset[Fn]]] = {}
         # Of a function it is the same in all nodes that run the same of what leads to it.
         self._ways: dict[tuple[Fn, frozenset[Fn]], list[CallWay]] = {}
 
@@ -231,11 +235,7 @@ class Join:
         cut: dict[Fn, Fn] = {}
         shut_lines: set[str] = set()
         for fn in running.functions & self._asking.keys() if values.settings else ():
-            closed = {
-                place
-                for place in self._asking[fn]
-                if self._is_shut(running, values, fn, place)
-            }
+            closed = {place for place in self._asking[fn] if self._is_shut(running, values, fn, place)}
             if closed:
                 facts = fn.facts
                 shut = {row for row in range(len(facts.guards)) if not closed.isdisjoint(fn.list_guards_around(row))}
@@ -295,6 +295,9 @@ class Join:
         objects = self.objects.list_objects(running.functions, loaded)
         first = [one for one in objects if one.name == running.node.name or use in one.uses]
         first = [one for one in first if one.name == running.node.name] or first
+        if first and not is_open(first[0].name):
+            # Another constructor of their class gives a name that no object has.
+            first = [one for one in first if one.name == first[0].name]
         further = [one for one in objects if one not in first] if first else []
         told = first[0] if len(first) == 1 else None
         if told is not None and not is_open(told.name) and running.node.name:
@@ -326,7 +329,13 @@ class Join:
         for one in through:
             keys |= self.objects.find_keys(one, running.functions)
         keys = keys or self.objects.find_keys(use, running.functions)
-        return bool(keys & running.objects) or (running.others is not None and not keys & running.others)
+        return self._is_on(keys, running)
+
+    @staticmethod
+    def _is_on(keys: frozenset[str], running: Running) -> bool:
+        """Whether what keys tell is made on a node of a program."""
+        objects, others = running.objects or frozenset(), running.others
+        return bool(keys & objects) or (others is not None and not keys & others)
 
     def find_started(self, launch: Launched) -> tuple[list[Running], list[Unresolved]]:
         """The nodes that a launch starts, under the names it gives them; and the starts that the code does not have."""
@@ -497,7 +506,9 @@ class Join:
             written = self.calls.find_argument(candidate, candidate.row.topic)
             values = running.evaluate(written, candidate.fn, candidate.call.line)
             # `_` stands for a name that options give.
-            found = next((value.text for value in values if value.text and value.text != "_"), "")
+            texts = dict.fromkeys(value.text for value in values if value.text and value.text != "_")
+            # Which of several it is, is not known.
+            found = next(iter(texts), "") if len(texts) < 2 else ""
             given = self.objects.find_own_name(candidate, running)
             found = found if given is None else given
             if use is None or found:
@@ -677,7 +688,7 @@ class Join:
             if owners.launched:
                 site = self._adapt_site(site, those[0])
             coming = [owner for owner in those if not self._is_left_out(site.use, owner)]
-            adapted = [(owner, self._adapt_site(site, owner)) for owner in coming]
+            adapted = [(owner, self._select_names_on(self._adapt_site(site, owner), owner)) for owner in coming]
             if not site.implied:
                 # Of nodes that run the same code, one may have a name that is not known.
                 every = ((those[0], site), *adapted)
@@ -837,6 +848,21 @@ class Join:
         known.append((owner, not beside, rests, found))
         return found
 
+    def _select_names_on(self, site: Site, owner: Owner) -> Site:
+        """A site with those of its names that it has on a node, of several that a program is: each node that code is
+        given has what it is given with it."""
+        if not isinstance(owner, Running) or owner.objects is None or site.implied or len(site.names) < 2:
+            return site
+        use, values = site.use, owner.limit_values()
+        ways = self.sites.contexts.list_contexts(use.fn, use.call.guard, values)
+        if len(ways) < 2:
+            return site
+        known = [(self.objects.find_keys_on_way(use, owner.functions, way), way) for way in ways]
+        found = [self.sites.find_names(use, way) for keys, way in known if self._is_on(keys, owner)]
+        names = tuple(dict.fromkeys(name for _, names in found for name in names))
+        same = bool(names) and {prefix for prefix, _ in found} == {site.prefix}
+        return site._replace(names=names) if same and len(found) < len(ways) else site
+
     def _is_written(self, site: Site) -> bool:
         """Whether a site's only name is written where it is made."""
         named = self.calls.find_argument(site.use, site.use.row.topic)
@@ -865,18 +891,45 @@ class Join:
 
     def _describe_condition(self, use: FrameworkCall, owner: Owner) -> str:
         """On what it depends that a node comes to a call, as Endpoint.only_if has it."""
-        if isinstance(owner, Running) and (use.fn not in owner.functions or not self.code.may_be_called(use.fn)):
+        if isinstance(owner, Running) and not self._is_called(use.fn, owner):
             return f"something calls `{use.fn.name or 'it'}`"
         texts = [guard.text for guard in self.list_guards(use.fn, use.call.guard) if guard.kind == "cpp"]
         return " && ".join((*texts, *self._list_closed(use, owner)))
 
+    def _is_called(self, fn: Fn, running: Running) -> bool:
+        """Whether something that a node runs may call a function."""
+        if fn not in running.functions or not self.code.may_be_called(fn):
+            return False
+        # What another program calls, or finds by name, is not seen from a plugin alone.
+        if running.program.kind not in ("executable", "script", "component") or not running.program.roots:
+            return True
+        known = self._called_of.get(id(running.functions))
+        if known is None:
+            begins = running.program.roots if running.program.kind != "component" else ()
+            called = self.called.find_called(begins, running.functions)
+            known = self._called_of[id(running.functions)] = running.functions, called
+        return fn in known[1]
+
     def _list_closed(self, use: FrameworkCall, owner: Owner) -> Iterator[str]:
         """The conditions around a call that do not hold in a node as far as is known, or of which that is not known
-        though a launch gives what they ask for."""
+        though they ask for what a launch gives."""
         values = owner.limit_values() if isinstance(owner, Running) else self.values
         for guard, decided in reversed(list(values.decide_guards(use.fn, use.call.guard))):
-            if decided.holds is False or (decided.holds is None and decided.is_given):
+            asks_open = decided.asks_open and (guard.kind != "unless" or self._has_other_branch(use.fn, guard))
+            if decided.holds is False or (decided.holds is None and (decided.is_given or asks_open)):
                 yield spell_condition(guard.kind, guard.text)
+
+    @cache_method
+    def _has_other_branch(self, fn: Fn, guard: Guard) -> bool:
+        """Whether something is made where the condition of a guard holds; else that only ends the function, or the
+        program, for a value that is refused."""
+        other = structs.replace(guard, kind="if")
+        made = (use.call.guard for use in self._uses_in.get(fn, ()) if use.row.does in _TRIGGERS)
+        return any(fn.facts.guards[place] == other for one in made for place in fn.list_guards_around(one))
+
+    @cached_property
+    def _uses_in(self) -> dict[Fn, list[FrameworkCall]]:
+        return group_pairs((use.fn, use) for use in self.calls.uses)
 
     def _is_left_out(self, use: FrameworkCall, owner: Owner) -> bool:
         """Whether a node does not come to a call, by what the launch gives that starts it."""
@@ -960,7 +1013,7 @@ class Join:
         for site in statement.sites:
             if self._is_left_out(site.use, owner):
                 continue
-            here = self._adapt_site(site, owner)
+            here = self._select_names_on(self._adapt_site(site, owner), owner)
             for value in here.names:
                 topic, _, reason = self.resolve_name(here, value, owner)
                 for type_ in _select_types(here, owner):
@@ -1019,9 +1072,7 @@ class _Owners:
         self.join, self.running, self.launched = join, running, launched
         self._libraries: dict[str, Node] = {}
         self._used: set[str] = set()
-        self._by_function = group_pairs(
-            (number, one) for one in running for number in one.functions
-        )
+        self._by_function = group_pairs((number, one) for one in running for number in one.functions)
 
     def list_owners(self, use: FrameworkCall, through: Sequence[FrameworkCall] = ()) -> list[Owner]:
         """Who runs a use: nodes that reach it; where no program is seen to, those that are built from its file, else

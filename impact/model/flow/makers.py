@@ -3,12 +3,25 @@ derive from the same base give."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 
 from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from .code import FlowCode, Fn, Made, Variable
 from .types import Cls
+
+
+def leave_out_passed_over(made: Mapping[Fn, list[Made]], begun: Collection[Fn] = ()) -> dict[Fn, list[Made]]:
+    """Who gives the constructors of a class and its bases their arguments, without constructors of bases that run in no
+    object: those that only hand on to another one, which the derived classes call themselves. begun: constructors that
+    surely run. Where nothing else is left, it is what it was."""
+    left = dict(made)
+    while True:
+        idle = {fn for fn, rows in left.items() if not rows and fn not in begun}
+        fewer = {fn: [row for row in rows if row[0] not in idle] for fn, rows in left.items()}
+        if fewer == left:
+            return {fn: rows or made[fn] for fn, rows in left.items()}
+        left = fewer
 
 
 class Makers:
@@ -23,7 +36,7 @@ class Makers:
         derive from it; without those where it is not known."""
         inside = {one.key for each in (cls, *self.code.derived.get(cls.key, ())) for one in self.code.list_bases(each)}
         own = {id(row[1]) for key in inside for row in self.code.constructions.get(key, ())}
-        found: dict[Fn, Sequence[Made]] = {}
+        found: dict[Fn, list[Made]] = {}
         for one in self.code.list_bases(cls)[1:]:
             for fn in self.code.list_functions(one):
                 if fn.is_lambda or not self.code.is_constructor(fn):
@@ -33,10 +46,8 @@ class Makers:
                 # An object of the base itself is none of the class.
                 itself = {id(row[1]) for row in self.code.constructions.get(one.key, ())}
                 rows = [row for row in every if self._is_of(row[0], inside) or id(row[1]) in own]
-                rows = [row for row in rows if id(row[1]) not in itself]
-                if rows:
-                    found[fn] = rows
-        return found
+                found[fn] = [row for row in rows if id(row[1]) not in itself]
+        return {fn: rows for fn, rows in leave_out_passed_over(found).items() if rows}
 
     def _is_of(self, fn: Fn, keys: set[str]) -> bool:
         owner = self.code.find_owner(fn)

@@ -18,7 +18,7 @@ from .types import Cls, parse_flow_type
 _Thing = TypeVar("_Thing")
 
 # Kinds of arguments that may hand on a function.
-_HANDING = frozenset(("function", "name", "bind"))
+_HANDING = frozenset(("function", "name", "bind", "keyword"))
 
 
 class StartableProgram(NamedTuple):
@@ -143,7 +143,7 @@ class CodeReach:
 
     def _list_handed(self, value: FlowExpr, fn: Fn) -> list[Fn]:
         """Functions outside of classes that an argument hands on; methods are reached through their class."""
-        if value.kind == "bind" and value.parts:
+        if value.kind in ("bind", "keyword") and value.parts:
             value = value.parts[0]
         if value.kind in ("function", "name") and "." not in value.text and get_tail(value.text) in self.code.by_tail:
             return [one for one in self.code.list_targets(value.text, fn) if not one.facts.owner]

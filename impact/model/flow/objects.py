@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, TypeVar
 from ....edges.groups import group_pairs
 from ...facts.flow import FlowExpr
 from .calls import Calls, FrameworkCall
-from .code import Fn, Made, Variable, find_parameter, get_tail
+from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail
 from .contexts import Contexts
 from .graph import Role
 from .names import RemappingRule, join_name, normalise
@@ -26,6 +26,11 @@ _ROLES = frozenset(Role.__args__)
 _ITSELF = frozenset(("this", "self", "*this", "shared_from_this", "this.shared_from_this"))
 # What gives what a pointer points to.
 _HANDED = frozenset(("lock", "get"))
+# Pointers that are made of another one, and functions that give what they are given.
+_WRAPS = frozenset(
+    ("shared_ptr", "unique_ptr", "weak_ptr", "SharedPtr", "WeakPtr", "static_pointer_cast", "dynamic_pointer_cast",
+     "const_pointer_cast", "static_cast", "dynamic_cast", "move", "ref", "forward")
+)  # fmt: skip
 
 
 class NodeObject(NamedTuple):
@@ -212,6 +217,10 @@ class NodeObjects:
             found |= {"namespace", "below"} if below else {"namespace"}
         return frozenset(found)
 
+    def find_keys_on_way(self, use: FrameworkCall, functions: Set[Fn], way: FlowValues) -> frozenset[str]:
+        """The same as find_keys(), on one of the ways that lead to the use."""
+        return frozenset(_Trace(self, functions, way).find_keys(use))
+
     def find_keys(self, use: FrameworkCall, functions: Set[Fn]) -> frozenset[str]:
         """What tells on which node objects a use is made where some functions run, as NodeObject.keys has it; empty
         where nothing does."""
@@ -248,10 +257,11 @@ class NodeObjects:
 
 class _Trace:
     """One search for the node objects that a use is made on. functions: those that run: of several that give or write
-    a node, the ones among these count, where there are any. rests_on: the functions of which that was asked."""
+    a node, the ones among these count, where there are any. way: through what alone the use is come to, None for
+    anything. rests_on: the functions of which it was asked whether they run."""
 
-    def __init__(self, objects: NodeObjects, functions: Set[Fn]):
-        self._objects, self._code, self._functions = objects, objects.code, functions
+    def __init__(self, objects: NodeObjects, functions: Set[Fn], way: FlowValues | None = None):
+        self._objects, self._code, self._functions, self._way = objects, objects.code, functions, way
         self.rests_on: set[Fn] = set()
 
     def find_keys(self, use: FrameworkCall) -> set[str]:
@@ -260,15 +270,20 @@ class _Trace:
         if use.row.does == "node":
             return {objects.find_named_key(use)}
         receiver = "" if use.row.does == "publish" else objects.calls.get_receiver(use)
-        given = next((one for one in use.call.arguments if objects.calls.is_node(one, use.fn)), None)
+        arguments = [one.parts[0] if one.kind == "keyword" and one.parts else one for one in use.call.arguments]
+        given = next((one for one in arguments if objects.calls.is_node(one, use.fn)), None)
+        around = self._code.find_owner(use.fn)
         for value in (FlowExpr("name", receiver) if receiver else None, given):
-            keys = self._follow(value, use.fn, frozenset()) if value is not None else set()
+            keys = self._follow(value, use.fn, around, frozenset()) if value is not None else set()
             if keys:
                 return keys
         return objects.find_own_key(use.fn)
 
-    def _follow(self, value: FlowExpr, fn: Fn, seen: frozenset[Variable]) -> set[str]:
-        """The keys of what an expression is, where it is a node object."""
+    def _follow(
+        self, value: FlowExpr, fn: Fn, around: Cls | None, seen: frozenset[tuple[Variable, str]]
+    ) -> set[str]:  # fmt: skip
+        """The keys of what an expression is, where it is a node object. around: the class of the object in which it is
+        evaluated."""
         objects, code = self._objects, self._code
         if value.kind == "call" and not value.parts and get_tail(value.text) in _HANDED and "." in value.text:
             value = FlowExpr("name", value.text.rpartition(".")[0])
@@ -276,28 +291,65 @@ class _Trace:
         if text in _ITSELF or (value.kind == "other" and "this" in text):
             return objects.find_own_key(fn)
         if value.kind in ("make", "call"):
-            return objects.find_class_key(code.resolve_type(value, fn), fn)
+            wraps = value.parts and get_tail(value.text.partition("<")[0]) in _WRAPS
+            keys = self._follow(value.parts[0], fn, around, seen) if wraps else set()
+            return keys or objects.find_class_key(code.resolve_type(value, fn), fn)
         if value.kind != "name" or len(seen) > _DEEPEST:
             return set()
         variable = code.identify(text, fn)
-        if variable in seen:
+        mark = variable, around.key if around is not None else ""
+        if mark in seen:
             return set()
-        seen |= {variable}
+        seen |= {mark}
         keys: set[str] = set()
-        for writer, each in self._select_running(code.list_writes(variable)):
+        for writer, each in self._select_running(self._select_own(code.list_writes(variable), variable, around)):
             made = make_key(writer, each.line)
-            keys |= {made} if made in objects.made else self._follow(each.value, writer, seen)
+            inner = around if variable.kind != "member" else self._find_around(writer, around)
+            keys |= {made} if made in objects.made else self._follow(each.value, writer, inner, seen)
         for caller, call in self._select_running(code.list_results(variable)):
             made = make_key(caller, call.line)
             keys |= {made} if made in objects.made else set()
         for one in code.list_enclosing_chain(fn) if variable.kind == "local" and not keys else ():
             place = find_parameter(one, variable.name)
             if place is not None:
-                every = [(giver, given) for given, giver in code.list_given(one, place[0], variable.name)]
-                for giver, given in self._select_running(every):
-                    keys |= self._follow(given, giver, seen)
+                for giver, given in self._select_running(self._list_given(one, place[0], variable.name, around)):
+                    keys |= self._follow(given, giver, self._find_around(giver, around), seen)
                 break
         return keys or objects.find_class_key(code.resolve_variable_type(variable, fn), fn)
+
+    def _list_given(self, fn: Fn, place: int, name: str, around: Cls | None) -> list[tuple[Fn, FlowExpr]]:
+        """Who gives what for the parameter of a function: on the way that leads to it alone, and for the constructor of
+        a base in objects of a class alone."""
+        only = self._way.way.get(fn) if self._way is not None else None
+        made = self._way.made.get(fn) if self._way is not None else None
+        if made is None and around is not None:
+            made = self._objects.values.makers.find_inside(around).get(fn)
+        if only is None and not made:
+            return [(giver, given) for given, giver in self._code.list_given(fn, place, name)]
+        rows = [(caller, call.arguments) for caller, call in self._code.callers.get(fn, ()) if call is only]
+        rows = rows or [(maker, arguments) for maker, arguments, _ in made or ()]
+        found = ((giver, find_argument(arguments, place, name)) for giver, arguments in rows)
+        return [(giver, given) for giver, given in found if given is not None]
+
+    def _find_around(self, fn: Fn, around: Cls | None) -> Cls | None:
+        """The class of the object in which a function runs that is come to from an object of a class: the same where it
+        belongs to a base of that."""
+        owner = self._code.find_owner(fn)
+        same = around is not None and owner is not None and owner.key in self._list_keys(around)
+        return around if same else owner
+
+    def _list_keys(self, cls: Cls) -> list[str]:
+        return [one.key for one in self._code.list_bases(cls)]
+
+    def _select_own(self, rows: Sequence[_Row], variable: Variable, around: Cls | None) -> Sequence[_Row]:
+        """Of what writes a member that which may be of objects of a class; all where that is nothing."""
+        if variable.kind != "member" or around is None or len(rows) < 2:
+            return rows
+        related = {*self._list_keys(around), *(one.key for one in self._code.derived.get(around.key, ()))}
+        if variable.owner not in related:
+            return rows
+        owners = ((row, self._code.find_owner(row[0])) for row in rows)
+        return [row for row, owner in owners if owner is None or owner.key in related] or rows
 
     def _select_running(self, rows: Sequence[_Row]) -> Sequence[_Row]:
         """Of rows that begin with a function those whose function runs; all where none does."""

@@ -11,6 +11,8 @@ from itertools import islice, product
 from operator import itemgetter
 from typing import NamedTuple, TypeVar
 
+from msgspec import structs
+
 from ....edges.groups import group_pairs
 from ...facts.flow import Assignment, FlowCall, FlowExpr, FlowParameter, Guard
 from ...facts.python.flow_expressions import LONGEST_OTHER, make_join
@@ -206,6 +208,10 @@ class _Known(NamedTuple):
     steps: int
 
 
+# How the reason begins why the value of a parameter is not known.
+NO_DEFAULT = "the parameter "
+
+
 class FlowValues:
     """Evaluates expressions in the functions of a body of code."""
 
@@ -300,7 +306,7 @@ class FlowValues:
         for each in fn.facts.assignments:
             if each.line != row.line or each.operator not in ("=", "for"):
                 continue
-            container = (_find_walked(each) if each.guard == guard else None) or find_begun(each.value)
+            container = (find_walked(each) if each.guard == guard else None) or find_begun(each.value)
             measured = _MEASURES.search(row.text) if each.value.kind == "number" else None
             if measured is not None:
                 container = FlowExpr("name", measured[1])
@@ -484,12 +490,15 @@ class FlowValues:
     def _decide_guard(self, guard: Guard, fn: Fn, seen: tuple) -> DecidedCondition:
         # Who asks a variable for its value is not under the guard yet.
         inner = (*seen, ("asks", fn, guard.line, guard.outer))
+        asks_open = False
 
         def list_known(value: FlowExpr) -> list[tuple[str, How]] | None:
             filling = self._find_filling(value, fn)
             if filling is not None:
                 return [("true", "launch")] if self._is_set(filling, inner) else None
+            nonlocal asks_open
             found = [one for one in self._evaluate(value, fn, guard.line, inner) if not one.uncalled]
+            asks_open = asks_open or any(one.text is None and one.reason.startswith(NO_DEFAULT) for one in found)
             known: list[tuple[str, How]] = [
                 (one.text, one.how)
                 for one in found
@@ -500,7 +509,8 @@ class FlowValues:
         if not seen:
             self._left = _STEPS_A_CONDITION
             self._note_others()
-        return ConditionReader(fn.source.facts.language == "cpp", list_known).decide_guard(guard)
+        decided = ConditionReader(fn.source.facts.language == "cpp", list_known).decide_guard(guard)
+        return decided._replace(asks_open=asks_open and decided.holds is None)
 
     def _find_filling(self, value: FlowExpr, fn: Fn) -> FrameworkCall | None:
         """The use that reads a parameter into a variable, and tells whether it was there; None for all else."""
@@ -558,6 +568,7 @@ class FlowValues:
         self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
     ) -> Iterator[FlowValue]:  # fmt: skip
         """What stands at a place, at a key, or in each turn of a loop."""
+        hows = frozenset[How]()
         if index.kind in ("number", "text"):
             found = self.elements.select(container, index, fn, line)
         elif index.kind == "other" and not index.text and container.text == _COUNTER:
@@ -568,10 +579,11 @@ class FlowValues:
             # A loop over a dictionary goes through its keys.
             found = [one._replace(value=_get_key(one.value)) for one in found or ()]
         else:
-            found = self._select_at_each(container, index, fn, line, seen)
+            found, hows = self._select_at_each(container, index, fn, line, seen)
         if found:
             for one in found:
-                yield from self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value)))
+                values = self._evaluate_listed(one, (*seen, ("element", one.value)))
+                yield from _put_under(values, DecidedCondition(None, hows), "") if hows else values
         elif index.kind == "number":
             one_of = list(self._evaluate_elements(container, fn, line, seen))
             yield from one_of
@@ -580,6 +592,10 @@ class FlowValues:
                 yield FlowValue(None, "unresolved", reason, beside=True)
         else:
             yield from self._evaluate_elements(container, fn, line, seen)
+
+    def _evaluate_listed(self, one: ListElement, seen: tuple) -> Iterable[FlowValue]:
+        """What an element of a list is worth, under the condition under which it is there."""
+        return put_under_more(self._evaluate(one.value, one.fn, one.line, seen), one.only_if)
 
     def _evaluate_count(self, container: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         """The number of a turn, as `enumerate` counts."""
@@ -603,11 +619,11 @@ class FlowValues:
 
     def _select_at_each(
         self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
-    ) -> list[ListElement]:  # fmt: skip
-        """What a dictionary has at each key that an expression may be worth; nothing where one of these is not known,
-        or it has no such key."""
-        if index.kind != "name" or self._is_in(("key", index.text), seen):
-            return []
+    ) -> tuple[list[ListElement], frozenset[How]]:  # fmt: skip
+        """What a dictionary has at each key that an expression may be worth, with how these are known; nothing where
+        one of them is not known, or it has no such key."""
+        if index.kind not in ("name", "call") or self._is_in(("key", index.text), seen):
+            return [], frozenset()
         keys = list(self._evaluate(index, fn, line, (*seen, ("key", index.text))))
         found: list[ListElement] = []
         for key in keys:
@@ -615,9 +631,9 @@ class FlowValues:
             if not chosen and is_number(key.text or ""):
                 chosen = self.elements.select(container, FlowExpr("number", key.text or ""), fn, line)
             if not chosen:
-                return []
+                return [], frozenset()
             found += chosen
-        return found
+        return found, frozenset(key.how for key in keys if key.how != "literal")
 
     def _list_following(self, index: FlowExpr, fn: Fn, line: int) -> list[str] | None:
         return self.command_line.list_following(index, fn, _find_guard(fn, line), self.arguments or ())
@@ -685,7 +701,7 @@ class FlowValues:
         known = known or (self._list_counted(path, fn, line) if path in fn.locals else None)
         if known:
             for one in known:
-                yield from self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value)))
+                yield from self._evaluate_listed(one, (*seen, ("element", one.value)))
             return
         variable = self.code.identify(path, fn)
         if self._is_in(variable, seen):
@@ -693,7 +709,7 @@ class FlowValues:
         known = self.elements.find_field(path, variable, fn, line) if "." in path else None
         if known:
             for one in known:
-                yield from self._evaluate(one.value, one.fn, one.line, (*seen, variable))
+                yield from self._evaluate_listed(one, (*seen, variable))
             return
         is_parsed = "." in path and self.command_line.is_parsed(path, fn)
         if is_parsed:
@@ -929,14 +945,14 @@ class FlowValues:
         replaced = elsewhere and self.makers.is_replaced(variable)
         begins = not rows or (fn.source.facts.language == "cpp" and not replaced)
         if not begun and not given and not remade and begins:
-            found.add(_put_under_more(self._evaluate_beginning(variable, fn, seen), left), rank=0)
+            found.add(put_under_more(self._evaluate_beginning(variable, fn, seen), left), rank=0)
         for writer, others in group_pairs(row for row in rows if row[0] is not fn or not line).items():
             if remade and writer is not fn and self.code.is_constructor(writer):
                 continue
             if self.find_makers(writer) is not None and self._is_made_otherwise(writer):
                 continue
             values = self._evaluate_outside(variable, writer, others, filled, origins, seen)
-            found.add(_put_under_more(values, left if self.code.is_class_body(writer) else ""), stays=True)
+            found.add(put_under_more(values, left if self.code.is_class_body(writer) else ""), stays=True)
         here = [(use, values) for use, values in filled if use.fn is fn and use.call.line < line]
         for use, values in filled:
             if not (use.fn is fn and use.call.line < line):
@@ -986,6 +1002,8 @@ class FlowValues:
         owner = self.code.find_owner(fn) if len(targets) > 1 and head in ("", "this") and "::" not in name else None
         if owner is None or not self.code.list_overrides(owner, name):
             return targets
+        if self.code.is_constructor(fn) and fn.source.facts.language == "cpp":
+            return self.code.find_method(owner, name) or targets  # what derives from it is not begun yet
         kept = {target for cls in self._list_object_classes(owner) for target in self.code.find_method(cls, name)}
         return [target for target in targets if target in kept] or targets
 
@@ -1374,7 +1392,7 @@ class FlowValues:
             chosen = self.elements.select(FlowExpr("name", head), value.parts[0], fn, line)
             if chosen:
                 for one in chosen:
-                    yield from self._evaluate(one.value, one.fn, one.line, (*seen, ("element", one.value)))
+                    yield from self._evaluate_listed(one, (*seen, ("element", one.value)))
                 return
         if python and last == "format" and head and not head.endswith("()") and value.receiver is None:
             yield from self._evaluate_format(value, head, fn, line, seen)
@@ -1660,7 +1678,7 @@ class FlowValues:
                     yielded = True
                     yield one
         if not yielded:
-            reason = f"the parameter `{name}` has no default here" if name else "which parameter it is, is not known"
+            reason = f"{NO_DEFAULT}`{name}` has no default here" if name else "which parameter it is, is not known"
             yield FlowValue(None, "given", reason)
 
     def _select_running(self, uses: list[FrameworkCall]) -> list[FrameworkCall]:
@@ -1875,7 +1893,7 @@ def _begins_turn(each: Assignment, fn: Fn) -> bool:
     return guard.kind == "for" and guard.line == each.line
 
 
-def _find_walked(each: Assignment) -> FlowExpr | None:
+def find_walked(each: Assignment) -> FlowExpr | None:
     """What the loop walks through of which an assignment begins the turns; None for all else."""
     value = each.value
     if value.kind == "index" and len(value.parts) == 2 and value.parts[1] != _EACH:
@@ -1913,7 +1931,7 @@ def spell_condition(kind: str, text: str) -> str:
     return path if (kind == "unless") == bool(found[1]) else f"!{path}"
 
 
-def _put_under_more(values: Iterable[FlowValue], condition: str) -> Iterable[FlowValue]:
+def put_under_more(values: Iterable[FlowValue], condition: str) -> Iterable[FlowValue]:
     """Values that are there under one more condition."""
     return [one._replace(only_if=_join_texts(one.only_if, condition)) for one in values] if condition else values
 
@@ -1936,6 +1954,8 @@ def _spell_guards(guards: Sequence[Guard], negated: bool = False) -> str:
     """The condition under which all of some guards hold, given from the nearest, or do not."""
     kinds = {"if": "unless", "unless": "if"} if negated else {}
     asking = [one for one in guards if one.kind in ASKING and not one.text.startswith("catch (")]
+    caught = [structs.replace(one, kind="if", text=f"catch ({one.text})") for one in guards if one.kind == "catch"]
+    asking = sorted((*asking, *caught), key=lambda one: one.line, reverse=True) if caught else asking
     return " && ".join(spell_condition(kinds.get(one.kind, one.kind), one.text) for one in reversed(asking))
 
 

@@ -9,10 +9,11 @@ Why it breaks
     The compiler stops with "No such file or directory" on that developer's machine and nowhere else.
 
 Severity
-    error for compiled code that is not guarded, tests of ROS 2 included; warning for tests of ROS 1, under CMake
-    conditions that are not known, and for the first use of each package or library that goes with an update or on the
-    newest distro's platform, or is deprecated and removed on the newest distro; note for its other uses, for examples,
-    for installed headers that the package does not compile itself, and under other tests of the code itself.
+    error for compiled code that is not guarded, tests of ROS 2 included; warning for tests of ROS 1, for a path that is
+    there where something exports the folder above (`x/x/y.h`), under CMake conditions that are not known, and for the
+    first use of each package or library that goes with an update or on the newest distro's platform, or is deprecated
+    and removed on the newest distro; note for its other uses, for examples, for installed headers that the package does
+    not compile itself, and under other tests of the code itself.
 
 Example
     #include <tf2_geometry_msgs/tf2_geometry_msgs.h>     // gone from tf2_geometry_msgs 0.36
@@ -29,7 +30,7 @@ Not reported
 
 from ...model.absent_headers import find_misspelt, is_bridge
 from ...model.package import is_header
-from ..vocabulary import Package, TargetView, Text, rule
+from ..vocabulary import Doubt, Package, TargetView, Text, rule
 from .diagnosis import build_availability_texts, diagnose
 from .included_headers import get_included_headers
 from .interface_headers import find_interface_fault
@@ -51,6 +52,8 @@ def removed_header(view: TargetView, package: Package):
         loss = headers.find_loss(package, include)
         if loss is not None:
             if loss.found is not None:
+                if loss.kind == "nested":
+                    doubts = (*doubts, Doubt.LUCKY)  # whatever exports the folder above brings this path too
                 yield diagnose(
                     loss.found, at, path, package.name, doubts,
                     kind=loss.kind, fix=loss.fix, order=order if loss.ordered else (),

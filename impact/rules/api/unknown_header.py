@@ -61,11 +61,16 @@ def unknown_header(view: TargetView, package: Package):
             if (meant := find_standard_header(view, path)) is not None:
                 yield Diagnostic(at, path, package.name, {"replacement": meant}, "standard", doubts)
             elif (never := find_never_installed(view, package, include)) is not None:
+                loss = headers.find_loss(package, include)
+                if loss is not None and loss.kind == "nested":
+                    continue  # it is there under a folder above, as removed-header says
                 if never.form == "never":
                     yield diagnose(never, at, path, package.name, doubts)
                 else:
                     data = {"package": never.package, "replacement": never.alike}
                     yield diagnose(never, at, path, package.name, doubts, kind="misspelt", data={**data})
+            elif view.guess_by_include(path):
+                continue  # undeclared-package names the package that it is of
             elif is_nowhere(view, package, include) and headers.find_loss(package, include) is None:
                 yield Diagnostic(at, path, package.name, {}, "nowhere", doubts)
             continue

@@ -38,6 +38,8 @@ def collect_missing_doubts(view: TargetView, package: Package, need: Need, name:
     if need.how == "include":
         return _collect_include_doubts(view, package, need, name)
     doubts = _collect_unknown_doubts(view, package, need, name)
+    if need.how == "find_package" and not view.is_available(name) and not view.is_surely_package(package, name):
+        doubts = (*doubts, Doubt.INCOMPLETE)
     return doubts if need.required else (*doubts, Doubt.CONDITIONAL)
 
 

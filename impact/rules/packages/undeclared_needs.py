@@ -112,10 +112,10 @@ def choose_name(view: TargetView, need: Need) -> str | None:
             continue
         if provider.name and view.is_available(provider.name):
             return provider.name
-    by_form = need.how in ("launch", "setting", "find_package", "component", "import")
+    by_form = need.how in ("launch", "setting", "find_package", "component", "import", "include")
     if not by_form or first.kind != "ros" or not first.sure:
         return None
-    meant = first.name == need.subject.partition(".")[0] and not view.target.is_other_generation(first.name)
+    meant = first.name == re.split(r"[./]", need.subject)[0] and not view.target.is_other_generation(first.name)
     return first.name if meant else None
 
 

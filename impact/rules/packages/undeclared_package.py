@@ -22,10 +22,11 @@ Severity
     package of the workspace brings, where at most five such are missing. warning: environment variables, tests of ROS
     1, other imports and launch files, settings, the tool of the build type, installed headers that nothing here
     compiles, or where a dependency is known nowhere and may bring it (a package named like an interface package may
-    provide interfaces). note: conditional code, examples (installed ones too, in what they import and start),
-    documentation, files that nothing compiles, or is known to install, and all but the first of more than five imports
-    (in ROS 1 and in tests, of several), or packages that launch files start, which a package does not declare, and
-    further packages that lack the same.
+    provide interfaces), and names that nobody is known to have, that CMake cannot go without and that are called as
+    packages of ROS are (`finger_tricks`); error for those whose interfaces are included or imported. note: conditional
+    code, examples (installed ones too, in what they import and start), documentation, files that nothing compiles, or
+    is known to install, and all but the first of more than five imports (in ROS 1 and in tests, of several), or
+    packages that launch files start, which a package does not declare, and further packages that lack the same.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
@@ -36,7 +37,8 @@ Use instead
 Not reported
     What a declared package brings (dependency-by-chance reports what is there by chance alone); code that is switched
     off on the target; nodes of other workspaces that start only under an argument; names that nobody is known to
-    provide (they are counted as unresolved), unless the form of the use says that a package is meant.
+    provide (they are counted as unresolved), unless the form of the use says that a package is meant, and nothing that
+    could bring it is known: a find module, a download, a submodule, a folder that CMake is pointed to.
 """
 
 from ..vocabulary import (
@@ -114,6 +116,8 @@ def _find_gravest(view: TargetView, package: Package, name: str, needs: list[Nee
 def _find_together(view: TargetView, need: Need, name: str) -> tuple[Together, ...]:
     """Launch files and modules are used one by one, and whoever declares the first looks for the others: those of the
     package and, of what several packages lack, those of the others."""
+    if need.how == "program":
+        return (Together(f"`{name}` is not declared, program", everywhere=True),)
     if need.how in (*ASKED, "include"):
         return ()
     early = view.target.ros == 1

@@ -18,9 +18,11 @@ Use instead
     ament_export_include_directories(include)
 
 Not reported
-    Packages that ament_auto exports, or that find the library in a file of CONFIG_EXTRAS.
+    Packages that ament_auto exports, that find the library in a file of CONFIG_EXTRAS, or that install an export and a
+    configuration of their own in `lib/cmake`, beside what ament_package() makes.
 """
 
+import re
 from collections.abc import Iterator
 
 from ...model.cmake.links import list_exported_targets
@@ -62,6 +64,8 @@ def _list_nothing(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     exports = package.build.exports
     if first is None or package.build.finds_declared or exports_something(exports):
         return
+    if _has_own_configuration(package):
+        return
     installed = package.build.installed_targets
     alone = _has_headers_alone(package)
     if not alone and not any(t.kind in ("library", "interface") and t.name in installed for t in package.build.targets):
@@ -73,6 +77,18 @@ def _list_nothing(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     if package.name not in view.workspace.includers and not own_base and not alone:
         return
     yield Diagnostic(first, "ament_export_include_directories", package.name, kind="nothing")
+
+
+def _has_own_configuration(package: Package) -> bool:
+    """Whether a package installs its targets for others with a configuration of its own in `lib/cmake` or
+    `share/cmake`, where CMake looks before it comes to the one that ament_package() makes."""
+    rules = [rule for rule in package.build.installs if _OF_CMAKE.match(rule.destination)]
+    names = (name.lower() for rule in rules for name in (*rule.items, rule.rename))
+    return any(rule.kind == "export" for rule in rules) and any(map(_CONFIGURATION.search, names))
+
+
+_OF_CMAKE = re.compile(r"(?:lib|share)/cmake/")
+_CONFIGURATION = re.compile(r"config\.cmake\Z")
 
 
 def _list_without_folder(view: TargetView, package: Package, ament: AmentExports) -> Iterator[Diagnostic]:

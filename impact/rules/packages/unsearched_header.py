@@ -18,9 +18,9 @@ Use instead
     #include "winch/lift.h"
 
 Not reported
-    Headers of the same path that something else has, or that may be made; includes under conditions that may not hold;
-    packages of which it is not known what their CMake code does, or that search folders which a find module of their
-    own looks up, and those that may have folders which were not read.
+    Headers of the same path that something else has, or may have since it is called as their folder, or that may be
+    made; includes under conditions that may not hold; packages of which it is not known what their CMake code does, or
+    that search folders which a find module of their own looks up, and those that may have folders which were not read.
 """
 
 import re
@@ -91,8 +91,16 @@ def _may_be_unread(view: TargetView, package: Package, path: str) -> bool:
 def _has_another(view: TargetView, package: Package, path: str) -> bool:
     """Whether something else that a package is built with may have a header of the same path."""
     head = path.partition("/")[0]
-    if head not in (path, package.name) and view.is_package(head):
-        return True  # the header is called after that package, whatever lies in a folder of this name
+    if head not in (path, package.name) and _may_be_of(view, package, head, path):
+        return True
     others = [one for one in view.providers.find_header(path) if one.name != package.name]
     around = view.build_environment(package)
     return any(one.kind != "ros" or one.name in around for one in others)
+
+
+def _may_be_of(view: TargetView, package: Package, name: str, path: str) -> bool:
+    """Whether a header whose folder is called as a package may be that package's: one of the workspace, or that comes
+    along, or a release of the target that is not known to lack it."""
+    if name in view.workspace.packages or name in view.build_environment(package):
+        return True
+    return view.target.find_version(name) is not None and view.has_released_header(name, path) is not False

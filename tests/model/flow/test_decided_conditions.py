@@ -385,7 +385,7 @@ ASKED_FOR = """
 
 
 @pytest.mark.parametrize(("launch", "expected"), [
-    ("", {("/there", ""), ("/lacking", ""), ("/on", "")}),
+    ("", {("/there", ""), ("/lacking", ""), ("/on", "on")}),
     ('<param name="on" value="true"/>', {("/there", ""), ("/on", "")}),
     ('<param name="on" value="false"/>', {("/there", "")}),
 ])  # fmt: skip

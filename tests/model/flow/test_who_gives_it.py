@@ -202,7 +202,7 @@ def test_what_another_program_passes_to_a_method_is_not_sure_to_be_a_name_of_a_n
     clients = {(one.node, one.topic, one.only_if) for one in found.endpoints if one.role == "client"}
     assert ("p/drive.py", "/switch_to_navigation", "") in clients
     others = {only_if for node, _, only_if in clients if node == "p/scan.py"}
-    assert others == {"something that runs passes the name"}
+    assert others == {"something calls `Arm.switch` && something that runs passes the name"}
 
 
 def test_a_launch_file_starts_a_program_by_the_name_that_it_is_installed_under(tmp_path):
