@@ -101,7 +101,7 @@ class Diagnostic(NamedTuple):
 
 class Upcoming(NamedTuple):
     """A diagnostic of something that is still there. changed: the package or library that goes without it. order: what
-    breaks first comes first.
+    breaks first comes first. home: the repository of a package that goes itself, whose packages go together.
 
     Nothing breaks on the target yet. What goes with the next sync, a later update or on the newest distro is worth one
     warning for each package or library that changes, in the whole workspace: its first place by what breaks first. The
@@ -112,6 +112,7 @@ class Upcoming(NamedTuple):
     changed: str
     horizon: Horizon
     order: tuple = ()
+    home: str = ""
 
 
 def rate_upcoming(found: Iterable[Diagnostic | Upcoming]) -> Iterator[Diagnostic]:
@@ -122,11 +123,12 @@ def rate_upcoming(found: Iterable[Diagnostic | Upcoming]) -> Iterator[Diagnostic
             every.append(one)
         else:
             yield one
-    for diagnostic, changed, horizon, _ in sorted(every, key=lambda one: one.order):
+    for diagnostic, changed, horizon, _, home in sorted(every, key=lambda one: one.order):
         evidence = diagnostic.evidence
         diagnostic = diagnostic._replace(evidence=evidence and evidence._replace(ahead=True))
         late = Doubt.FAR if horizon.far else Doubt.UPCOMING
-        together = (Together(f"{changed} of {horizon.name}", everywhere=True),)
+        causes = (changed, f"the repository {home}") if home else (changed,)
+        together = tuple(Together(f"{cause} of {horizon.name}", everywhere=True) for cause in causes)
         yield diagnostic._replace(doubts=(*diagnostic.doubts, late), together=together)
 
 

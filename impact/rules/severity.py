@@ -71,6 +71,11 @@ def limit_severity(*doubts: Doubt | bool | None) -> str:
     return min(allowed, key=SEVERITIES.index, default=SEVERITIES[-1])
 
 
+def rate_newest(view: TargetView) -> Doubt:
+    """What speaks against an error for what holds only on the newest distro."""
+    return Doubt.FAR if any(ahead.platform and ahead.far for ahead in view.horizons) else Doubt.UPCOMING
+
+
 # Languages whose conditions a file states about itself.
 _IN_CODE = frozenset(("cpp", "macro", "python"))
 

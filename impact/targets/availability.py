@@ -89,7 +89,8 @@ def list_horizons(target: DistroTarget, asked: Iterable[str] = ()) -> tuple[Hori
         found.append(Horizon(updated, f"{target.distro} of {updated.date}"))
     newest = target.find_newest()
     if newest is not None and newest.distro not in asked:
-        found.append(Horizon(newest, newest.distro, platform=True, far=_count_newer_lts(target) > _NEAR))
+        far = target.has_ended() or _count_newer_lts(target) > _NEAR
+        found.append(Horizon(newest, newest.distro, platform=True, far=far))
     return tuple(found)
 
 

@@ -39,7 +39,7 @@ class Horizon(NamedTuple):
     """What a target is going to be. name: as a message has it. platform: the newest distro, of which only the platform
     counts (libraries and Python), packages that it lacks, and what is deprecated here already. What its packages change
     otherwise is shown by `rosimpact upgrade`, since nobody gets them without moving on. far: more than two long-term
-    distros ahead, which is worth no warning."""
+    distros ahead, or ahead of a distro that is no longer maintained and gets no update, which is worth no warning."""
 
     target: DistroTarget
     name: str

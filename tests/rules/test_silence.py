@@ -900,6 +900,19 @@ SILENT = {
         ),
         ("test/slide.cpp", "#include <map>\n", ""),
     ),
+    "a header of the compiler that the source includes first": Silent(
+        "missing-standard-include",
+        ("jazzy",),
+        ament(
+            "find_package(PCL REQUIRED)\nadd_library(sled sled.cpp)\n"
+            "target_include_directories(sled PRIVATE ${PCL_INCLUDE_DIRS})\n"
+            "target_link_libraries(sled ${PCL_LIBRARIES})\ninstall(TARGETS sled DESTINATION lib)",
+            "depend:libpcl-all-dev",
+            sled_hpp="#pragma once\ninline float find_most() { return FLT_MAX; }\n",
+            sled_cpp='#include <float.h>\n#include <pcl/filters/voxel_grid.h>\n#include "sled.hpp"\n',
+        ),
+        ("sled.cpp", "#include <float.h>\n", ""),
+    ),
     "a header that comes through the package's own": Silent(
         "missing-standard-include",
         ("jazzy",),

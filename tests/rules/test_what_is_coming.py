@@ -11,8 +11,9 @@ FILES = rule_cases.read_changed_files("api/changed_signature")
 @pytest.mark.parametrize(
     ("target", "expected"),
     [
-        ("melodic", {"warning"}),
-        ("lunar", {"warning"}),
+        ("melodic@2020-06-01", {"warning"}),
+        ("lunar@2019-01-01", {"warning"}),
+        ("melodic", {"note"}),  # which gets no update any longer
         ("jade", {"note"}),
         ("noetic", {"error"}),
     ],
@@ -28,9 +29,10 @@ def test_nothing_is_coming_where_the_newest_distro_is_asked_for_itself(tmp_path)
         report = rule_cases.check_files(FILES, Options(targets=targets, cache=tmp_path))
         return {(f.severity, f.targets) for f in report.findings if f.subject.startswith("boost::posix_time::millis")}
 
-    assert told("melodic") == {("warning", ("melodic",))}
-    assert told("melodic", "noetic") == {("error", ("noetic",))}
-    assert told("melodic") == {("warning", ("melodic",))}  # and what was said of two targets is not remembered for one
+    melodic = "melodic@2020-06-01"
+    assert told(melodic) == {("warning", (melodic,))}
+    assert told(melodic, "noetic") == {("error", ("noetic",))}
+    assert told(melodic) == {("warning", (melodic,))}  # and what was said of two targets is not remembered for one
 
 
 @pytest.mark.parametrize(
@@ -56,7 +58,9 @@ def test_a_field_that_goes_with_the_next_sync(target, expected, tmp_path):
     assert {f.severity for f in found.findings} == expected
 
 
-@pytest.mark.parametrize(("target", "expected"), [("melodic", ["note", "warning"]), ("noetic", ["error", "error"])])
+@pytest.mark.parametrize(
+    ("target", "expected"), [("melodic@2020-06-01", ["note", "warning"]), ("noetic", ["error", "error"])]
+)
 def test_a_component_that_goes_with_the_newest_distro_is_one_warning_for_the_workspace(target, expected, tmp_path):
     alarm = rule_cases.read_changed_files("packages/library_component")
     again = {path.replace("alarm/", "bell/", 1): text.replace("alarm", "bell") for path, text in alarm.items()}

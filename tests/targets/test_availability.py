@@ -115,7 +115,7 @@ def test_what_will_go_is_upcoming_on_the_nearest_horizon():
     ("target", "asked", "expected"),
     [
         (DistroTarget("noetic"), (), []),
-        (DistroTarget("melodic"), (), [("noetic", True, False)]),
+        (DistroTarget("melodic"), (), [("noetic", True, True)]),  # which nobody maintains any longer
         (DistroTarget("melodic"), ("noetic",), []),
         (DistroTarget("indigo"), (), [("noetic", True, True)]),
     ],
@@ -123,6 +123,11 @@ def test_what_will_go_is_upcoming_on_the_nearest_horizon():
 def test_the_newest_distro_is_a_horizon_for_its_platform(target, asked, expected):
     found = [one for one in list_horizons(target, asked) if "next sync" not in one.name]
     assert [(one.name, one.platform, one.far) for one in found] == expected
+
+
+def test_it_is_near_while_the_distro_is_maintained():
+    *_, newest = list_horizons(DistroTarget("melodic", "2020-06-01"))
+    assert (newest.name, newest.platform, newest.far) == ("noetic", True, False)
 
 
 def test_a_date_has_a_next_sync_and_an_update():

@@ -120,7 +120,7 @@ class Install(msgspec.Struct, frozen=True, array_like=True, gc=False):
     export set that targets are put into. namespace: of an export. includes: INCLUDES DESTINATION of targets.
     executable: a folder whose files keep, or are given, the permission to be executed. rewritten: the first line of
     programs in Python is made to name the interpreter that the package is built with. optional: files that need not be
-    there."""
+    there. guessed: the destination of files rests on a value that is not known, or differs between branches."""
 
     kind: str
     items: tuple[str, ...]
@@ -136,6 +136,7 @@ class Install(msgspec.Struct, frozen=True, array_like=True, gc=False):
     executable: bool = False
     rewritten: bool = False
     optional: bool = False
+    guessed: bool = False
 
 
 class CMakeExport(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -143,7 +143,7 @@ def _install_files(run: Interpreter, call: CommandCall, kind: str, args: list[Wo
     destination, optional = _resolve_destination(run, call, args), "OPTIONAL" in args
     for conditions, members in group_pairs((item.conditions, item) for item in split_words(items)).items():
         more = {"conditions": merge(run.conditions, conditions), "rename": run.clean(find_next(args, "RENAME") or "")}
-        more["optional"] = optional
+        more["optional"], more["guessed"] = optional, _is_guessed(args)
         paths = tuple(map(run.resolve_tree_path, members))
         for path in paths:
             if _CONFIGURATION.search(path):
@@ -156,6 +156,12 @@ def _resolve_destination(run: Interpreter, call: CommandCall, args: list[Word]) 
     given = [folder for keyword, folder in pairwise(args) if keyword == "DESTINATION"]
     destination = run.clean(given[-1] if given else "") or _TYPES.get(find_next(args, "TYPE") or "", "")
     return destination or ("${DESTINATION}" if any("$" in argument.text for argument in call.arguments) else "")
+
+
+def _is_guessed(args: list[Word]) -> bool:
+    """Whether where files go rests on a value that is not known, or that differs between branches."""
+    given = [folder for keyword, folder in pairwise(args) if keyword == "DESTINATION"]
+    return bool(given) and not given[-1].sure
 
 
 def _install_directory(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
@@ -177,5 +183,5 @@ def _install_directory(run: Interpreter, call: CommandCall, args: list[Word]) ->
     paths = tuple(run.resolve_tree_path(item) for item in split_words(items))
     executable = "USE_SOURCE_PERMISSIONS" in args or any(item.endswith("_EXECUTE") for item in args)
     more = {"patterns": tuple(patterns), "only": "FILES_MATCHING" in args, "executable": executable}
-    more["optional"] = "OPTIONAL" in args
+    more["optional"], more["guessed"] = "OPTIONAL" in args, _is_guessed(args)
     run.add_install("directory", paths, _resolve_destination(run, call, args), call, **more)

@@ -1,5 +1,6 @@
 """What the rules of this family say of something that a target lacks, or will lack."""
 
+import re
 from collections.abc import Collection, Iterable, Iterator
 
 from ...facts.condition import Condition
@@ -138,9 +139,21 @@ def find_gone_package(
         )  # fmt: skip
 
 
+_MARKED = re.compile(rf"[_-]({'|'.join(DISTROS)})(?![A-Za-z0-9])")
+
+
 def is_of_another_distro(view: TargetView, path: str, files: Collection[str]) -> bool:
     """Whether a file is for other distros than the target: it, or one that stands for it there, lies in a folder that
-    is called after a distro (`param/humble/burger.yaml`). files: of its package."""
+    is called after a distro (`param/humble/burger.yaml`), or settings are called so themselves beside such as are for
+    all others (`burger_humble.yaml`, `burger.yaml`). files: of its package."""
     folder, _, name = path.rpartition("/")
     distro = view.target.distro
-    return any(part in DISTROS and part != distro for part in folder.split("/")) or f"{folder}/{distro}/{name}" in files
+    if any(part in DISTROS and part != distro for part in folder.split("/")) or f"{folder}/{distro}/{name}" in files:
+        return True
+    if not name.endswith((".yaml", ".yml")):
+        return False
+    marked = _MARKED.search(name)
+    if marked is not None:
+        return marked[1] != distro and f"{folder}/{name[: marked.start()]}{name[marked.end() :]}" in files
+    stem, dot, ending = name.partition(".")
+    return any(f"{folder}/{stem}{mark}{distro}{dot}{ending}" in files for mark in "_-")

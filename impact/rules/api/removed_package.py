@@ -80,7 +80,9 @@ def list_gone_packages(view: TargetView, package: Package, form: str) -> Iterato
                 found = Diagnostic(
                     at, name, package.name, data, f"upcoming{_find_fate(view, name, later.replacement)}", doubts
                 )
-                yield Upcoming(found, name, later.horizon, (at.path, at.line))
+                repository = view.target.find_repository(name)
+                home = repository[0] if repository is not None else ""
+                yield Upcoming(found, name, later.horizon, (at.path, at.line), home)
             continue
         gone = rows.get("removed")
         if gone is None or view.is_available(name):

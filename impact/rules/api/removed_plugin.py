@@ -34,7 +34,7 @@ from ...model.package import ReferenceUse
 from ...model.python.programs import has_unknown_commands
 from ...model.read_plugins import find_read_plugins
 from ...model.settings import get_plugin_package
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, list_place_doubts, rule
 from .diagnosis import (
     GONE_PACKAGE,
     build_availability_texts,
@@ -85,7 +85,9 @@ def removed_plugin(view: TargetView, package: Package):
                 data = {"upstream": owner, "version": version, "other": 3 - view.target.ros}
                 kind = "library" if version else "generation"
                 doubts = (*list_place_doubts(view, use.role), Doubt.LATE)
-                yield Diagnostic(use.at, name, package.name, data, kind, doubts)
+                # Which simulator the descriptions are for is one question, and settled for all of them at once.
+                same = (Together(f"{name} is of the other generation", everywhere=True),)
+                yield Diagnostic(use.at, name, package.name, data, kind, doubts, together=same)
             continue
         found = find_missing(view, "plugin", name, _list_candidates(view, package, use))
         if found is not None and view.may_have(found.package):

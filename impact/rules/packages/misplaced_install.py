@@ -26,7 +26,7 @@ from ...model.cmake.build import Install
 from ...model.cmake.installed import list_copied_files
 from ...model.cmake.links import resolve_package
 from ...model.package import find_folder_role
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .install_rules import list_places, list_references, read_installs
 
 
@@ -126,6 +126,8 @@ def _list_other_python(view: TargetView, package: Package, installs) -> Iterator
     own = f"{view.target.python_major}.{view.target.python}"
     for install in installs:
         found = re.search(r"(?:^|/)python([23]\.\d+)/(?:site|dist)-packages", install.destination)
-        if found is not None and found.group(1) != own and view.is_sure(install.conditions):
-            data = {"version": found.group(1), "own": own}
-            yield Diagnostic(install.at, install.destination, package.name, data, "python")
+        if found is None or found.group(1) == own or install.guessed or not view.is_sure(install.conditions):
+            continue
+        data = {"version": found.group(1), "own": own}
+        same = (Together(f"folder of Python {found.group(1)}"),)
+        yield Diagnostic(install.at, install.destination, package.name, data, "python", together=same)

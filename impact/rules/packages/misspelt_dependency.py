@@ -11,8 +11,9 @@ Why it breaks
 
 Severity
     error; warning for a name `x` or `x2` if exactly one package or key such as `x_vendor` or `libx-dev` exists, for one
-    that differs from a package of the workspace in the ending of a word, for a target of the package, and for what only
-    the documentation is made with (`doc_depend`), which `rosdep install` leaves out.
+    that differs from a package of the workspace in the ending of a word or, in a package that is there to bring others,
+    in a word that is left out, for a target of the package, and for what only the documentation is made with
+    (`doc_depend`), which `rosdep install` leaves out.
 
 Example
     <depend>Eigen3</depend>

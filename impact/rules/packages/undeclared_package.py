@@ -116,6 +116,8 @@ def _find_gravest(view: TargetView, package: Package, name: str, needs: list[Nee
 def _find_together(view: TargetView, need: Need, name: str) -> tuple[Together, ...]:
     """Launch files and modules are used one by one, and whoever declares the first looks for the others: those of the
     package and, of what several packages lack, those of the others."""
+    if need.how == "program":
+        return (Together(f"`{name}` is not declared, program", everywhere=True),)
     if need.how in (*ASKED, "include"):
         return ()
     early = view.target.ros == 1

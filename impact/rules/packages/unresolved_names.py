@@ -11,6 +11,7 @@ from ...targets.changes import DISTROS
 from ...targets.providers.stdlib import was_ever_in_stdlib
 from ...targets.target import Resolution
 from ..vocabulary import At, Doubt, Package, Remove, Replace, TargetView
+from .used_names import shows_uses
 
 
 class UnresolvedName(NamedTuple):
@@ -26,7 +27,8 @@ class IntendedName(NamedTuple):
     """What was meant by a name that is neither a package nor a key. kind: `standard library` (a module of it that the
     package imports), `installing` (a key that installs what the name stands for), `target` (a target of the package
     that declares it), `near` (a slip of a known name), `repository` (packages that are called after it), `related` (the
-    one name that it may stand for, or a package of the workspace with another ending)."""
+    one name that it may stand for, or a package of the workspace with another ending or, in a metapackage, with a word
+    besides)."""
 
     kind: str
     names: tuple[str, ...]
@@ -80,7 +82,9 @@ def find_intended(view: TargetView, package: Package, name: str) -> IntendedName
         return IntendedName("near", (near,))
     if longer := _find_parts(view, name):
         return IntendedName("repository", tuple(longer))
-    related = _find_namesake(view, package, name) or _find_reworded(view, name)
+    related = (
+        _find_namesake(view, package, name) or _find_reworded(view, name) or _find_lengthened(view, package, name)
+    )
     return IntendedName("related", (related,)) if related else None
 
 
@@ -142,6 +146,27 @@ def _find_reworded(view: TargetView, name: str) -> str:
         alike = len(words) > 1 and other.count("_") == len(words) - 1 and len(pairs) == 1
         if alike and posixpath.commonprefix(pairs[0])[_STEM - 1 :]:
             found.append(other)
+    return found[0] if len(found) == 1 else ""
+
+
+_MEMBERS = 2
+"""Packages of its workspace that a package without uses declares where it is there to bring them."""
+
+
+def _find_lengthened(view: TargetView, package: Package, name: str) -> str:
+    """The package of the workspace that has all words of a name, in order, and one besides, where what declares the
+    name is there to bring packages of the workspace, and does not declare that one; empty where there is none, or
+    several."""
+    declared, words = view.collect_declared(package), name.split("_")
+    own = view.workspace.packages
+    if len(words) < 2 or shows_uses(package) or package.build.targets or len(own.keys() & declared) < _MEMBERS:
+        return ""
+    others = {other: other.split("_") for other in own if other != package.name and other not in declared}
+    found = [
+        other
+        for other, longer in others.items()
+        if len(longer) == len(words) + 1 and any(longer[:i] + longer[i + 1 :] == words for i in range(len(longer)))
+    ]
     return found[0] if len(found) == 1 else ""
 
 

@@ -9,7 +9,7 @@ from ...model.cpp.lost_headers import LostHeader, LostHeaders
 from ...model.package import NeededHeader
 from ...targets.providers.message_headers import parse_type
 from ...targets.providers.standard import get_bit
-from ..vocabulary import Diagnostic, Doubt, Insert, Package, TargetView, Together
+from ..vocabulary import Diagnostic, Doubt, Insert, Package, TargetView, Together, rate_newest
 
 LOST = "`{name}` is used without `<{subject}>`, "
 """How the texts of both begin."""
@@ -56,7 +56,7 @@ def find_missing_includes(view: TargetView, standard: bool) -> Iterator[Diagnost
                 package.name,
                 {"name": need.name, "by": lost.by, "version": lost.version, "horizon": horizon},
                 kind="dropped" if lost.once else "never",
-                doubts=(Doubt.UPCOMING if sure and not lost.now else doubt,),
+                doubts=(rate_newest(view) if sure and not lost.now else doubt,),
                 together=(Together(f"{lost.by} of {horizon}", True),) if not lost.now else (),
                 fix=_include(view, package, need, lost.header) if lost.by == "gcc" else (),
             )

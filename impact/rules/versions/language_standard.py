@@ -29,7 +29,7 @@ from ...model.standards import find_standards, may_be_raised, may_be_set_elsewhe
 from ...targets.providers.library import NeededStandard, find_default_standard, find_needed_standard, get_year
 from ...targets.providers.standard import HEADER_SINCE, is_empty
 from ...targets.version import is_at_least
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rate_newest, rule
 
 _HELP = "set(CMAKE_CXX_STANDARD {needed})"
 _NEEDS = "`{header}`[[ of {upstream}]][[ {version}]][[ ({horizon})]] needs C++{needed}"
@@ -117,7 +117,7 @@ def _check_ros2(view: TargetView, package: Package, default: int | None):
             and (later := find_needed_standard(newest, include.path))
             and (get_year(later.standard) > have and (find_default_standard(newest) or 0) >= get_year(later.standard))
         ):
-            need, doubts, horizon = later, (Doubt.UPCOMING,), view.horizon
+            need, doubts, horizon = later, (rate_newest(view),), view.horizon
         else:
             continue
         data = _build_data(include.path, need, fixed[0], horizon)

@@ -556,6 +556,10 @@ class DistroTarget:
             moments.append(compute_end_of_day(self.end_of_life))
         return [list_public_rules(self._data, split_platform(self.platform)[0], ts) for ts in moments]
 
+    def has_ended(self) -> bool:
+        """Whether the distro was no longer maintained on the target's day."""
+        return bool(self.end_of_life) and self.end_of_life <= self.date[:10]
+
     def knows_key(self, key: str) -> bool:
         """True when rosdep has, or had, a key of this name for any platform."""
         return key in self._rules or key in self._data.list_values("rule", "key")
