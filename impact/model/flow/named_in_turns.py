@@ -68,6 +68,10 @@ class NamesInTurns:
         return variable.owner in (owner.key, *below, *(one.key for one in self._code.list_bases(owner)))
 
     @cached_property
+    def _begun(self) -> Any:
+        return self._begin()
+
+    @cached_property
     def _declared(self) -> dict[str, list[DefaultGiven]]:
         found: dict[str, list[DefaultGiven]] = {}
         self._is_asked = True
@@ -134,7 +138,7 @@ class NamesInTurns:
     def _list_ways(self, fn: Fn, guard: int) -> list[Any]:
         """What evaluates expressions on each way to a place of a function: in each turn of the loops around, and
         through each call of it where it is given something. None where there are too many."""
-        begun = self._begin()
+        begun = self._begun
         callers = self._code.callers.get(fn, ()) if fn.facts.parameters and not self._code.is_constructor(fn) else ()
         found: list[Any] = []
         for caller, call in callers:

@@ -210,6 +210,8 @@ class _Known(NamedTuple):
     steps: int
 
 
+# What is the same of a body of code whatever else is known.
+_SHARED = ("filled", "declared", "by_name", "command_line", "origins", "parameter_words", "makers")
 # How the reason begins why the value of a parameter is not known.
 NO_DEFAULT = "the parameter "
 
@@ -322,7 +324,7 @@ class FlowValues:
 
     def _make_copy(self, *given) -> FlowValues:
         other = FlowValues(self.calls, *given)
-        for name in ("filled", "declared", "by_name", "command_line", "origins", "parameter_words", "makers"):
+        for name in _SHARED:
             other.__dict__[name] = getattr(self, name)
         other._budget, other._decided = self._budget, self._decided
         other._outer = self._outer
@@ -786,7 +788,8 @@ class FlowValues:
     def _begin_anew(self) -> FlowValues:
         """The same code where nothing is known of who runs it."""
         other = FlowValues(self.calls)
-        other.__dict__["by_name"] = self.by_name
+        for name in _SHARED:
+            other.__dict__[name] = getattr(self, name)
         other.find_prefix, other.find_outside_text = self.find_prefix, self.find_outside_text
         return other
 
