@@ -9,12 +9,13 @@ adds, of messages within texts of 8 bytes and arrays of 3 elements and of any st
     opaque   true where it cannot be said without code that is not in the workspace; then the others are left out
     beyond   true where something follows only from arrays that are longer
 What the tool says is computed when it is scored, on a checkout of the commit, and written beside it (NAME.said.jsonl),
-with the most memory that the run on its workspace took, in MB.
+with what preparing, exploring and replaying it took once the workspace was read: seconds of the processor, of this
+process and all that it started, those of the clock, and the most memory of all these, in MB.
 A crash that the reader has not got is judged by hand afterwards: `true` in NAME.verdicts.jsonl (repo, path, line, kind)
 
 usage: value_sight.py draw --set NAME --clones FOLDER [--number 6] [--seed 20]
        value_sight.py score --set NAME --clones FOLDER --work FOLDER [--replay] [--seconds 20] [--compiling 60]
-                     [--resume]
+                     [--resume] [--repo OWNER/NAME]
 """
 
 from __future__ import annotations
@@ -27,15 +28,18 @@ import statistics
 import subprocess
 import sys
 import threading
+import time
 from pathlib import Path
 from types import TracebackType
 
 import mining
 from field_sight import list_callbacks
-from rosimpact.edges.console import UserError
-from rosimpact.impact.analysis.values import explore_values
+from rosimpact.impact.analysis.session import open_tree
+from rosimpact.impact.facts.store import Store
+from rosimpact.impact.model.flow.workspace import get_flow, link_for_flow
 from rosimpact.impact.values.answers import CallbackAnswer
 from rosimpact.impact.values.outcomes import Bounds, Reaction
+from rosimpact.impact.values.survey import Asked, Survey
 
 SETS = Path(__file__).parent / "values"
 _WORDS = (("handles", Reaction.HANDLED), ("ignores", Reaction.IGNORED), ("logs", Reaction.LOG_ONLY))
@@ -52,6 +56,22 @@ def draw(options: argparse.Namespace, systems: list[dict]) -> None:
                 del record["fields"]
                 out.write(json.dumps(record) + "\n")
             print(f"{system['repo']}: {len(records)} callbacks", file=sys.stderr, flush=True)
+
+
+class ProcessorTime:
+    """Seconds of the processor, of users and of the system, that this process and all that it started have taken since
+    it was made. What runs still is not counted."""
+
+    def __init__(self) -> None:
+        self._begun = self._read()
+
+    @staticmethod
+    def _read() -> float:
+        found = os.times()
+        return found.user + found.system + found.children_user + found.children_system
+
+    def measure(self) -> float:
+        return self._read() - self._begun
 
 
 class MemoryWatch:
@@ -129,36 +149,39 @@ def ask(options: argparse.Namespace, system: dict, records: list[dict]) -> list[
     folder = options.work / clone.name.replace("/", "+")
     if not folder.exists():
         check_out(clone, system["commit"], folder)
-    names = sorted({record["callback"] for record in records})
     bounds = Bounds(seconds=options.seconds, compiling=options.compiling)
-    try:
-        with MemoryWatch() as watch:
-            answer = explore_values(
-                folder, callbacks=names, bounds=bounds, replays=options.replay, publishers=False, jobs=2
-            )
-    except UserError as error:
-        print(f"{system['repo']}: {error}", file=sys.stderr)
-        return [{"explored": False, "reason": str(error)} for _ in records]
-    said = []
-    for record in records:
-        rows = [one for one in answer.report.callbacks if one.callback == record["callback"]]
-        rows = [one for one in rows if one.path == record["path"]] or rows
-        same = [one for one in rows if one.message_type == record["type"]] or rows
-        said.append(describe(same[0]) if same else {"explored": False, "reason": "the tool has no such callback"})
-        said[-1]["memory"] = watch.peak
-    return said
+    tree = open_tree(folder, "")
+    with Store() as store:
+        workspace = link_for_flow(tree, store, 2, None)
+        with Survey(folder, workspace, get_flow(workspace).system, bounds) as survey:
+            return [ask_one(options, survey, record) for record in records]
+
+
+def ask_one(options: argparse.Namespace, survey: Survey, record: dict) -> dict:
+    """What the tool says of one callback, and what that took."""
+    asked = Asked(callbacks=(record["callback"],))
+    processor, begun = ProcessorTime(), time.monotonic()
+    with MemoryWatch() as watch:
+        report, _ = survey.explore(asked, publishers=False, replays=options.replay, jobs=1)
+    rows = [one for one in report.callbacks if one.callback == record["callback"]]
+    rows = [one for one in rows if one.path == record["path"]] or rows
+    same = [one for one in rows if one.message_type == record["type"]] or rows
+    said = describe(same[0]) if same else {"explored": False, "reason": "the tool has no such callback"}
+    took = {"processor": round(processor.measure(), 2), "clock": round(time.monotonic() - begun, 2)}
+    return {**said, **took, "memory": watch.peak}
 
 
 def score(options: argparse.Namespace, systems: list[dict], records: list[dict]) -> None:
     """Prints how many callbacks are explored, and how often tool and reader say the same."""
     pairs: list[tuple[dict, dict]] = []
     kept = SETS / f"{options.set}.said.jsonl"
-    known = [json.loads(line) for line in kept.read_text().splitlines()] if options.resume else []
+    known = [json.loads(line) for line in kept.read_text().splitlines()] if options.resume or options.repo else []
     with kept.open("w") as out:
         for system in systems:
             own = [record for record in records if record["repo"] == system["repo"]]
             answers = [one for one in known if one["repo"] == system["repo"]]
-            if len(answers) != len(own):
+            is_asked = system["repo"] in options.repo if options.repo else len(answers) != len(own)
+            if is_asked:
                 answers = ask(options, system, own)
             for record, said in zip(own, answers, strict=True):
                 pairs.append((record, said))
@@ -187,6 +210,10 @@ def score(options: argparse.Namespace, systems: list[dict], records: list[dict])
     times = [said["seconds"] for _, said in pairs if "seconds" in said]
     if times:
         print(f"seconds: median {statistics.median(times):.2f}, most {max(times):.2f}")
+    for word in ("processor", "clock"):
+        if whole := [said[word] for _, said in pairs if word in said]:
+            middle, most = statistics.median(whole), max(whole)
+            print(f"seconds of the {word} with compiling and replays: median {middle:.2f}, most {most:.2f}")
     sizes = [said["memory"] for _, said in pairs if "memory" in said]
     if sizes:
         print(f"memory of all processes of a run: most {max(sizes)} MB")
@@ -204,6 +231,7 @@ def main() -> None:
     parser.add_argument("--compiling", type=float, default=60.0, help="seconds of the processor for each source")
     parser.add_argument("--replay", action="store_true")
     parser.add_argument("--resume", action="store_true", help="systems that have an answer already are not asked again")
+    parser.add_argument("--repo", action="append", help="only these of the set; the answers of the others stay")
     options = parser.parse_args()
     systems = [json.loads(line) for line in (SETS / f"{options.set}.systems.jsonl").read_text().splitlines()]
     if options.command == "draw":

@@ -314,7 +314,9 @@ def _describe_shortage(error: BaseException) -> str:
     unloaded = isinstance(error, ImportError) and ("failed to map" in str(error) or "allocate" in str(error))
     # What Python itself says where it could not make the exception.
     unmade = isinstance(error, SystemError) and "without exception set" in str(error)
-    if isinstance(error, MemoryError) or unloaded or unmade or number == errno.ENOMEM:
+    # What the solver says, which is not imported here.
+    unsolved = type(error).__name__ == "Z3Exception" and "out of memory" in str(error)
+    if isinstance(error, MemoryError) or unloaded or unmade or unsolved or number == errno.ENOMEM:
         return "not enough memory; give it more, or use fewer processes with --jobs 1"
     if number == errno.EAGAIN or (isinstance(error, RuntimeError) and "start new thread" in str(error)):
         return "the system allows no more processes or threads; use fewer with --jobs 1, or allow more with `ulimit -u`"

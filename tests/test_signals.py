@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 
 import pytest
+import z3
 from rosimpact.edges import console
 
 MANIFEST = """<package format="3"><name>{0}</name><version>1.0.0</version><description>d</description>
@@ -254,6 +255,7 @@ SHORTAGES = [
     (MemoryError(), "not enough memory"),
     (OSError(12, "Cannot allocate memory"), "not enough memory"),
     (ImportError("x.so: failed to map segment from shared object"), "not enough memory"),
+    (z3.Z3Exception(b"out of memory"), "not enough memory"),
     (OSError(24, "Too many open files", "/x"), "ulimit -n"),
     (OSError(23, "Too many open files in system"), "ulimit -n"),
     (OSError(11, "Resource temporarily unavailable"), "--jobs 1"),

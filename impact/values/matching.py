@@ -511,27 +511,33 @@ def _is_choice(one: FieldSets) -> bool:
     return listed > 1 or (listed == 1 and bool(one.names))
 
 
+def _tells_apart(one: FieldSets) -> bool:
+    """Whether there are values of a field that a callback surely does not handle, or a few texts that it does. Where it
+    handles all, it may not look at the field."""
+    return one.sets[Reaction.HANDLED].texts is not None or (one.unhandled is not None and not one.unhandled.is_empty())
+
+
 def _list_impossible(answer: CallbackAnswer, topic: str, rows: Sequence[Sender]) -> Iterator[Mismatch]:
     """Values that a subscriber tells from all others and that nobody sends."""
     for sets in answer.fields:
         handled = sets.sets.get(Reaction.HANDLED)
         if handled is None or handled.is_relational or not answer.is_complete:
             continue
-        if sets.path.startswith(("this.", "global.", "~")):
+        if sets.path.startswith(("this.", "global.", "~")) or not _tells_apart(sets):
             continue
         sent = [row.fields.get(sets.path) for row in rows]
         if any(one is None or not one.is_known for one in sent):
             continue
         known = [one.values for one in sent if one is not None]
-        never = tuple(
-            (value, value) for value in _list_single(handled) if not any(has_value(values, value) for values in known)
-        )
+        # Lengths of a text go as far as was looked, and are no values that a callback waits for.
+        listed = _list_single(handled) if sets.kind not in (InputKind.SIZE, InputKind.CHARACTER) else []
+        never = tuple((value, value) for value in listed if not any(has_value(values, value) for values in known))
         lost: tuple[bytes, ...] = ()
         if handled.texts is not None and all(values.texts is not None for values in known):
             texts = {text for values in known for text in values.texts or ()}
             lost = tuple(sorted(set(handled.texts) - texts))
         for values in (FieldValues(never) if never else None, FieldValues(texts=lost) if lost else None):
-            if values is not None and sets.kind is not InputKind.SIZE:
+            if values is not None:
                 text = format_values(values, sets.names)
                 yield Mismatch(IMPOSSIBLE, "note", topic, answer.message_type, sets.path, text, None, answer)
 

@@ -332,6 +332,8 @@ class _Search:
             bits = self.variable.bits
             largest = 1.7976931348623157e308 if bits == 64 else 3.4028234663852886e38
             return self.make_key(pack_float(-largest, bits)), self.make_key(pack_float(largest, bits))
+        if self.variable.kind is InputKind.BOOLEAN:
+            return 0, 1
         return 0, self.variable.most if self.variable.kind is InputKind.SIZE else self.top
 
     def _find_end(self, question: _Question, low: int, high: int, is_least: bool, hints: Sequence[int]) -> int | None:

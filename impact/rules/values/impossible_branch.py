@@ -16,6 +16,7 @@ Use instead
 
 Not reported
     Topics with a publisher that was not followed, such as a program with a loop, or with one whose name is not known.
+    Fields of which every value is handled, and lengths of texts: nothing waits for these.
     It runs only where it, or `values`, is selected by name.
 """
 

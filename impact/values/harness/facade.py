@@ -15,6 +15,9 @@ _BOTH: _Rows = (
     (r"message_filters/.*\.h(pp)?", "ri_filters.hpp"),
     (r"diagnostic_updater/.*\.h(pp)?", "ri_updater.hpp"),
     (r"angles/angles\.h(pp)?", "ri_angles.hpp"),
+    (r"sensor_msgs/image_encodings\.h(pp)?", "ri_encodings.hpp"),
+    (r"sensor_msgs/(impl/)?point_cloud2_iterator\.h(pp)?", "ri_clouds.hpp"),
+    (r"cv_bridge/.*\.h(pp)?|opencv2?/.*\.h(pp)?", "ri_cv.hpp"),
     (r"Q[A-Z]\w+|Qt\w*/\w+|qt?[a-z]+\.h", "ri_qt.hpp"),
 )
 _ROS1: _Rows = (

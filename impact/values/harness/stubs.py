@@ -23,7 +23,9 @@ _HOOKS = frozenset(
 )  # fmt: skip
 
 
-_FACADES = frozenset(("ros", "rclcpp", "rclcpp_action", "rclcpp_lifecycle", "tf", "tf2", "tf2_ros", "nodelet"))
+_FACADES = frozenset(
+    ("ros", "rclcpp", "rclcpp_action", "rclcpp_lifecycle", "tf", "tf2", "tf2_ros", "nodelet", "cv", "cv_bridge")
+)
 
 
 class CompileError(NamedTuple):

@@ -14,7 +14,7 @@ from typing import Any
 
 import z3
 
-from . import arrays, operators, rotations, texts
+from . import arrays, images, operators, rotations, texts
 from .messages import Messages
 from .modules import Handle, KnownMethod, ModuleCode, Outside, PythonClass, PythonFunction, PythonObject, TimeValue
 from .terms import (
@@ -79,6 +79,7 @@ _HANDLES = {
     "threading.RLock": "lock", "tf.TransformListener": "listener", "tf2_ros.TransformListener": "listener",
     "tf2_ros.Buffer": "listener", "logging.getLogger": "logger", "tf2_ros.buffer.Buffer": "listener",
     "tf2_ros.transform_listener.TransformListener": "listener", "threading.Event": "event",
+    **dict.fromkeys(images.BRIDGES, "bridge"),
 }  # fmt: skip
 _NODE_METHODS = {
     "create_publisher": "publisher", "create_subscription": "subscription", "create_client": "client",
@@ -91,7 +92,7 @@ _QUIET = frozenset((
     "rospy.get_name", "rospy.on_shutdown", "rclpy.init", "rclpy.spin", "rclpy.spin_once", "rclpy.ok",
     "rospy.rostime.wallsleep",
     "message_filters.Subscriber", "message_filters.ApproximateTimeSynchronizer", "message_filters.TimeSynchronizer",
-    "cv_bridge.CvBridge", "rclpy.qos.QoSProfile", "rospy.get_namespace", "rospy.get_caller_id",
+    "rclpy.qos.QoSProfile", "rospy.get_namespace", "rospy.get_caller_id",
     "rospy.get_published_topics",
 ))  # fmt: skip
 _PLAIN_NODES = frozenset(("rclpy.node.Node", "rclpy.create_node"))
@@ -591,6 +592,10 @@ def _call_handle_method(machine: Machine, handle: Handle, name: str, given: list
         return _call_goal(machine, handle, name)
     if kind == "future":
         return handle.content if name == "result" and handle.content is not None else Opaque(f"{handle.name}.{name}()")
+    if kind == "bridge":
+        if name == "imgmsg_to_cv2" and isinstance(picture := (given or [named.get("img_msg")])[0], Record):
+            images.require_encoding(run, machine.get_member(picture, "encoding"))
+        return _compute_outside(machine, f"cv_bridge.CvBridge.{name}", given)
     if kind == "broadcaster":
         if loud:
             run.note_effect("transform", handle.name)

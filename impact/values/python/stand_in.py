@@ -188,6 +188,8 @@ def call(name, given, named):
         return _Moment(_count(given[0]))
     if name.startswith(ROTATIONS) and last in COMPUTED:
         return COMPUTED[last](*given, **named)
+    if name.startswith("cv_bridge.") and last == "imgmsg_to_cv2":
+        check_encoding(given[0] if given else named.get("img_msg"))
     if last == "sendTransform":
         note("transform")
         return None
@@ -201,6 +203,22 @@ def call(name, given, named):
     return _Stub(name + "()")
 
 
+class CvBridgeError(TypeError):
+    pass
+
+
+def check_encoding(picture):
+    """Raises what cv_bridge does for an encoding that it does not know."""
+    encoding = getattr(picture, "encoding", None)
+    if isinstance(encoding, str) and encoding not in ENCODINGS and not encoding.startswith(ENCODING_TYPES):
+        raise CvBridgeError("Unrecognized image encoding [" + encoding + "]")
+
+
+ENCODING_TYPES = ("8U", "8S", "16U", "16S", "32S", "32F", "64F")
+ENCODINGS = ("mono8", "mono16", "rgb8", "rgb16", "bgr8", "bgr16", "rgba8", "rgba16", "bgra8", "bgra16", "yuv422")
+ENCODINGS += ("bayer_rggb8", "bayer_bggr8", "bayer_gbrg8", "bayer_grbg8")
+ENCODINGS += ("bayer_rggb16", "bayer_bggr16", "bayer_gbrg16", "bayer_grbg16")
+ENCODINGS += ("yuv422_yuy2", "uyvy", "yuyv", "nv12", "nv21", "nv24")
 ROTATIONS = ("tf.transformations.", "tf_transformations.", "transformations.")
 
 
@@ -383,7 +401,9 @@ class _StandIn(types.ModuleType):
         if len(parts) > 1 and parts[1] == "srv" and name[:1].isupper():
             whole = f"{parts[0]}/{name}"
             return find_class(whole) if name.endswith(("Request", "Response")) else _Service(whole)
-        if name.endswith(("Exception", "Error", "Interrupt")):
+        if name == "CvBridgeError":
+            made = CvBridgeError
+        elif name.endswith(("Exception", "Error", "Interrupt")):
             made = type(name, (Exception,), {})
         elif name[:1].isupper() and self.__name__.startswith("rclpy") and name.endswith("Node"):
             made = _Node

@@ -185,6 +185,9 @@ RI_COMPARES(==) RI_COMPARES(!=) RI_COMPARES(<) RI_COMPARES(>) RI_COMPARES(<=) RI
 
 template <class T, class = void> struct is_message : std::false_type {};
 template <class T> struct is_message<T, std::void_t<typename T::ri_is_message>> : std::true_type {};
+// What is known of in part: it has ri_lose() to forget that, and ri_fill() for what another callback may have left.
+template <class T, class = void> struct can_lose : std::false_type {};
+template <class T> struct can_lose<T, std::void_t<decltype(std::declval<T &>().ri_lose())>> : std::true_type {};
 template <class T> struct is_vector : std::false_type {};
 template <class T, class A> struct is_vector<std::vector<T, A>> : std::true_type {};
 template <class T, class = void> struct is_fixed : std::false_type {};
@@ -301,6 +304,7 @@ template <class T> inline constexpr bool is_scalar_state =
 template <class T> void fill_state(T &value, const char *name) {
   if constexpr (std::is_const<T>::value) { (void)value; }
   else if constexpr (is_scalar_state<T>) fill(value, name);
+  else if constexpr (can_lose<T>::value) { ri_enter(name); value.ri_fill(); ri_leave(); }
   else if constexpr (std::is_array<T>::value || is_fixed<T>::value) {
     if constexpr (std::is_arithmetic<std::decay_t<decltype(value[0])>>::value &&
                   sizeof(T) / sizeof(value[0]) <= 16) fill(value, name);
@@ -406,7 +410,8 @@ template <class T> void fill_foreign(T &value) {
   ri_enter("~foreign"); ri_enter_index(touched++); fill(value, ""); ri_leave(); ri_leave();
 }
 template <class T> void forget(T &value) {
-  if constexpr (std::is_reference<T>::value || has_name<T>::value || is_lock<std::remove_cv_t<T>>::value ||
+  if constexpr (can_lose<T>::value) value.ri_lose();
+  else if constexpr (std::is_reference<T>::value || has_name<T>::value || is_lock<std::remove_cv_t<T>>::value ||
                 std::is_base_of<Anything, T>::value) (void)value;
   else if constexpr (is_pointer_like<std::remove_cv_t<T>>::value) {
     // The pointer alone: an object that is shared without a count.
@@ -422,7 +427,8 @@ inline void lose_member() noexcept { ri_foreign("a member that cannot be watched
 
 // What code that is not here was handed: messages and texts are filled anew, the rest is forgotten.
 template <class T> void touch(T &value) {
-  if constexpr (std::is_const<T>::value || std::is_function<T>::value || has_name<T>::value || is_lock<T>::value ||
+  if constexpr (can_lose<T>::value) value.ri_lose();
+  else if constexpr (std::is_const<T>::value || std::is_function<T>::value || has_name<T>::value || is_lock<T>::value ||
                 std::is_base_of<Anything, T>::value || std::is_empty<T>::value) (void)value;
   else if constexpr (std::is_pointer<T>::value) {
     using Inner = std::remove_pointer_t<T>;

@@ -469,11 +469,48 @@ struct NodeOptions {
 
 template <class T> struct TypeOfCallback { using type = void; };
 
+class Node;
 namespace node_interfaces {
-#define RI_INTERFACE(Name) struct Name : ri::Anything { using ri::Anything::Anything; RCLCPP_SMART_PTR_DEFINITIONS(Name) };
-RI_INTERFACE(NodeBaseInterface) RI_INTERFACE(NodeTopicsInterface) RI_INTERFACE(NodeServicesInterface) RI_INTERFACE(NodeTimersInterface)
-RI_INTERFACE(NodeLoggingInterface) RI_INTERFACE(NodeParametersInterface) RI_INTERFACE(NodeClockInterface) RI_INTERFACE(NodeGraphInterface)
-RI_INTERFACE(NodeWaitablesInterface) RI_INTERFACE(NodeTimeSourceInterface) RI_INTERFACE(OnSetParametersCallbackHandle) RI_INTERFACE(PostSetParametersCallbackHandle) RI_INTERFACE(PreSetParametersCallbackHandle)
+struct OnSetParametersCallbackHandle : ri::Anything { using ri::Anything::Anything; RCLCPP_SMART_PTR_DEFINITIONS(OnSetParametersCallbackHandle) };
+struct PostSetParametersCallbackHandle : ri::Anything { using ri::Anything::Anything; RCLCPP_SMART_PTR_DEFINITIONS(PostSetParametersCallbackHandle) };
+struct PreSetParametersCallbackHandle : ri::Anything { using ri::Anything::Anything; RCLCPP_SMART_PTR_DEFINITIONS(PreSetParametersCallbackHandle) };
+// The interfaces of a node are the node.
+struct RiInterface {
+  Node *ri_node = nullptr;
+  Node &ri_get() const { if (!ri_node) ri_unknown("an interface of a node that is not known"); return *ri_node; }
+};
+#define RI_INTERFACE(Name, ...)                                                                             \
+  struct Name : RiInterface, ri::Anything {                                                                 \
+    RCLCPP_SMART_PTR_DEFINITIONS(Name)                                                                      \
+    Name(Node *node = nullptr) { ri_node = node; }                                                          \
+    __VA_ARGS__                                                                                             \
+  };
+RI_INTERFACE(NodeBaseInterface,
+  const char *get_name() const; const char *get_namespace() const; const char *get_fully_qualified_name() const;
+  Context::SharedPtr get_context() { return contexts::get_global_default_context(); }
+  CallbackGroup::SharedPtr create_callback_group(CallbackGroupType type, bool = true) { auto made = std::make_shared<CallbackGroup>(); made->ri_type = type; return made; }
+  CallbackGroup::SharedPtr get_default_callback_group() { return std::make_shared<CallbackGroup>(); }
+  std::string resolve_topic_or_service_name(const std::string &, bool, bool = false) const { ri_unknown("how a name is resolved"); return {}; })
+RI_INTERFACE(NodeTopicsInterface,
+  std::string resolve_topic_name(const std::string &, bool = false) const { ri_unknown("how a name is resolved"); return {}; }
+  NodeBaseInterface *get_node_base_interface() const { return new NodeBaseInterface(ri_node); })
+RI_INTERFACE(NodeServicesInterface, std::string resolve_service_name(const std::string &, bool = false) const { ri_unknown("how a name is resolved"); return {}; })
+RI_INTERFACE(NodeTimersInterface)
+RI_INTERFACE(NodeLoggingInterface, Logger get_logger() const { return {}; } const char *get_logger_name() const { return "node"; })
+RI_INTERFACE(NodeClockInterface, std::shared_ptr<Clock> get_clock(); std::shared_ptr<const Clock> get_clock() const;)
+RI_INTERFACE(NodeGraphInterface,
+  size_t count_publishers(const std::string &) const { return ri_integer("~publishers", 32, 0); }
+  size_t count_subscribers(const std::string &) const { return ri_integer("~subscribers", 32, 0); })
+RI_INTERFACE(NodeParametersInterface,
+  const ParameterValue &declare_parameter(const std::string &, const ParameterValue &, const rcl_interfaces::msg::ParameterDescriptor & = {}, bool = false);
+  bool has_parameter(const std::string &) const; Parameter get_parameter(const std::string &) const; bool get_parameter(const std::string &, Parameter &) const;
+  std::vector<Parameter> get_parameters(const std::vector<std::string> &) const;
+  std::vector<rcl_interfaces::msg::SetParametersResult> set_parameters(const std::vector<Parameter> &);
+  rcl_interfaces::msg::SetParametersResult set_parameters_atomically(const std::vector<Parameter> &);
+  template <class F> std::shared_ptr<OnSetParametersCallbackHandle> add_on_set_parameters_callback(F &&) { return std::make_shared<OnSetParametersCallbackHandle>(); }
+  template <class F> std::shared_ptr<PostSetParametersCallbackHandle> add_post_set_parameters_callback(F &&) { return std::make_shared<PostSetParametersCallbackHandle>(); }
+  template <class F> std::shared_ptr<PreSetParametersCallbackHandle> add_pre_set_parameters_callback(F &&) { return std::make_shared<PreSetParametersCallbackHandle>(); })
+RI_INTERFACE(NodeWaitablesInterface) RI_INTERFACE(NodeTimeSourceInterface) RI_INTERFACE(NodeTypeDescriptionsInterface)
 #undef RI_INTERFACE
 }  // namespace node_interfaces
 struct Event { RCLCPP_SMART_PTR_DEFINITIONS(Event) };
@@ -648,10 +685,11 @@ class Node : public std::enable_shared_from_this<Node> {
   std::map<std::string, std::vector<std::string>> get_topic_names_and_types() const { ri::unknown("rclcpp::Node::get_topic_names_and_types"); return {}; }
   Event::SharedPtr get_graph_event() { return std::make_shared<Event>(); }
   template <class... A> void wait_for_graph_change(A &&...) {}
-#define RI_GIVES(getter, Name) node_interfaces::Name::SharedPtr getter() { return std::make_shared<node_interfaces::Name>(); }
+#define RI_GIVES(getter, Name) node_interfaces::Name::SharedPtr getter() { return std::make_shared<node_interfaces::Name>(this); }
   RI_GIVES(get_node_base_interface, NodeBaseInterface) RI_GIVES(get_node_topics_interface, NodeTopicsInterface) RI_GIVES(get_node_services_interface, NodeServicesInterface)
   RI_GIVES(get_node_timers_interface, NodeTimersInterface) RI_GIVES(get_node_logging_interface, NodeLoggingInterface) RI_GIVES(get_node_parameters_interface, NodeParametersInterface)
   RI_GIVES(get_node_clock_interface, NodeClockInterface) RI_GIVES(get_node_graph_interface, NodeGraphInterface) RI_GIVES(get_node_waitables_interface, NodeWaitablesInterface)
+  RI_GIVES(get_node_time_source_interface, NodeTimeSourceInterface) RI_GIVES(get_node_type_descriptions_interface, NodeTypeDescriptionsInterface)
 #undef RI_GIVES
   std::string ri_node_name, ri_space;
   NodeOptions ri_options;
@@ -662,9 +700,78 @@ class Node : public std::enable_shared_from_this<Node> {
 #endif
 };
 
-template <class M, class N, class F, class... O> auto create_subscription(N &&node, const std::string &topic, const QoS &qos, F &&callback, O &&...) { return node->template create_subscription<M>(topic, qos, std::forward<F>(callback)); }
-template <class M, class N, class... O> auto create_publisher(N &&node, const std::string &topic, const QoS &qos, O &&...) { return node->template create_publisher<M>(topic, qos); }
-template <class N, class F, class... O> auto create_timer(N &&node, Clock::SharedPtr, const Duration &d, F &&callback, O &&...) { return node->create_timer(d, std::forward<F>(callback)); }
+namespace node_interfaces {
+inline const char *NodeBaseInterface::get_name() const { return ri_get().get_name(); }
+inline const char *NodeBaseInterface::get_namespace() const { return ri_get().get_namespace(); }
+inline const char *NodeBaseInterface::get_fully_qualified_name() const { return ri_get().get_fully_qualified_name(); }
+inline std::shared_ptr<Clock> NodeClockInterface::get_clock() { return ri_get().get_clock(); }
+inline std::shared_ptr<const Clock> NodeClockInterface::get_clock() const { return ri_get().get_clock(); }
+inline const ParameterValue &NodeParametersInterface::declare_parameter(const std::string &name, const ParameterValue &otherwise, const rcl_interfaces::msg::ParameterDescriptor &, bool) { Node &node = ri_get(); return node.ri_keep(name, ri_find_value(name, otherwise)); }
+inline bool NodeParametersInterface::has_parameter(const std::string &name) const { return ri_get().has_parameter(name); }
+inline Parameter NodeParametersInterface::get_parameter(const std::string &name) const { return ri_get().get_parameter(name); }
+inline bool NodeParametersInterface::get_parameter(const std::string &name, Parameter &out) const { return ri_get().get_parameter(name, out); }
+inline std::vector<Parameter> NodeParametersInterface::get_parameters(const std::vector<std::string> &names) const { return ri_get().get_parameters(names); }
+inline std::vector<rcl_interfaces::msg::SetParametersResult> NodeParametersInterface::set_parameters(const std::vector<Parameter> &all) { return ri_get().set_parameters(all); }
+inline rcl_interfaces::msg::SetParametersResult NodeParametersInterface::set_parameters_atomically(const std::vector<Parameter> &all) { return ri_get().set_parameters_atomically(all); }
+template <class T, class = void> struct ri_has_node : std::false_type {};
+template <class T> struct ri_has_node<T, std::void_t<decltype(std::declval<T &>().ri_node)>> : std::true_type {};
+template <class T, class = void> struct ri_gives_base : std::false_type {};
+template <class T> struct ri_gives_base<T, std::void_t<decltype(std::declval<T &>().get_node_base_interface())>> : std::true_type {};
+template <class T, class = void> struct ri_points : std::false_type {};
+template <class T> struct ri_points<T, std::void_t<decltype(*std::declval<T &>())>> : std::true_type {};
+// The node behind a node, one of its interfaces, or a pointer to either.
+template <class N> Node *ri_find_node(N &&given) {
+  using D = std::decay_t<N>;
+  if constexpr (std::is_base_of<Node, D>::value) return const_cast<D *>(&given);
+  else if constexpr (ri_has_node<D>::value) return given.ri_node;
+  else if constexpr (ri_gives_base<D>::value) return ri_find_node(given.get_node_base_interface());
+  else if constexpr (ri_points<D>::value) return ri_find_node(*given);
+  else return nullptr;
+}
+template <class N> Node &ri_require_node(N &&given) {
+  Node *node = ri_find_node(given);
+  if (!node) ri_unknown("something that is made for a node that is not known");
+  return *node;
+}
+// Several of them in one.
+template <class... I> struct NodeInterfaces {
+  RCLCPP_SMART_PTR_DEFINITIONS(NodeInterfaces<I...>)
+  Node *ri_node = nullptr;
+  NodeInterfaces() = default;
+  template <class N, class... A> NodeInterfaces(N &&node, A &&...) : ri_node(ri_find_node(node)) {}
+  template <class T> std::shared_ptr<T> get() const { return std::make_shared<T>(ri_node); }
+#define RI_GIVES(getter, Name) Name::SharedPtr getter() const { return std::make_shared<Name>(ri_node); }
+  RI_GIVES(get_node_base_interface, NodeBaseInterface) RI_GIVES(get_node_topics_interface, NodeTopicsInterface) RI_GIVES(get_node_services_interface, NodeServicesInterface)
+  RI_GIVES(get_node_timers_interface, NodeTimersInterface) RI_GIVES(get_node_logging_interface, NodeLoggingInterface) RI_GIVES(get_node_parameters_interface, NodeParametersInterface)
+  RI_GIVES(get_node_clock_interface, NodeClockInterface) RI_GIVES(get_node_graph_interface, NodeGraphInterface) RI_GIVES(get_node_waitables_interface, NodeWaitablesInterface)
+#undef RI_GIVES
+};
+template <class T, class = void> struct ri_is_interface : std::false_type {};
+template <class T> struct ri_is_interface<T, std::enable_if_t<ri::is_pointer_like<std::decay_t<T>>::value>> : std::is_base_of<RiInterface, typename std::decay_t<T>::element_type> {};
+}  // namespace node_interfaces
+template <class T> using RiIfInterface = std::enable_if_t<node_interfaces::ri_is_interface<T>::value>;
+template <class T> using RiIfNone = std::enable_if_t<!std::is_convertible<T, const char *>::value>;
+
+// What makes publishers and the like for a node, or for one of its interfaces. What the code names as the class of what
+// is made is made.
+template <class M, class P> using RiPublisher = std::conditional_t<std::is_void<P>::value, Publisher<M>, P>;
+template <class P, class N> std::shared_ptr<P> ri_make_publisher(N &&node, const std::string &topic) {
+  node_interfaces::ri_require_node(node);
+  auto made = std::make_shared<P>(); made->ri_topic = topic; made->ri_keep_name(topic); return made;
+}
+template <class M, class A = void, class P = void, class N, class... O> std::shared_ptr<RiPublisher<M, P>> create_publisher(N &&node, const std::string &topic, const QoS &, O &&...) { return ri_make_publisher<RiPublisher<M, P>>(node, topic); }
+template <class M, class A = void, class P = void, class N, class T, class... O, class = RiIfInterface<T>> std::shared_ptr<RiPublisher<M, P>> create_publisher(N &&, T &&topics, const std::string &topic, const QoS &, O &&...) { return ri_make_publisher<RiPublisher<M, P>>(topics, topic); }
+template <class M, class F, class N> std::shared_ptr<Subscription<M>> create_subscription(N &&node, const std::string &topic, const QoS &, F &&callback, RI_HERE) { return node_interfaces::ri_require_node(node).template ri_subscribe<M>(topic, std::forward<F>(callback), ri_file, ri_line); }
+template <class M, class F, class N, class O, class = RiIfNone<O>> std::shared_ptr<Subscription<M>> create_subscription(N &&node, const std::string &topic, const QoS &, F &&callback, O &&, RI_HERE) { return node_interfaces::ri_require_node(node).template ri_subscribe<M>(topic, std::forward<F>(callback), ri_file, ri_line); }
+template <class M, class F, class N, class O, class P, class = RiIfNone<O>, class = RiIfNone<P>> std::shared_ptr<Subscription<M>> create_subscription(N &&node, const std::string &topic, const QoS &, F &&callback, O &&, P &&, RI_HERE) { return node_interfaces::ri_require_node(node).template ri_subscribe<M>(topic, std::forward<F>(callback), ri_file, ri_line); }
+template <class M, class F, class N, class T, class = RiIfInterface<T>> std::shared_ptr<Subscription<M>> create_subscription(N &&, T &&topics, const std::string &topic, const QoS &, F &&callback, RI_HERE) { return node_interfaces::ri_require_node(topics).template ri_subscribe<M>(topic, std::forward<F>(callback), ri_file, ri_line); }
+template <class M, class F, class N, class T, class O, class = RiIfInterface<T>, class = RiIfNone<O>> std::shared_ptr<Subscription<M>> create_subscription(N &&, T &&topics, const std::string &topic, const QoS &, F &&callback, O &&, RI_HERE) { return node_interfaces::ri_require_node(topics).template ri_subscribe<M>(topic, std::forward<F>(callback), ri_file, ri_line); }
+template <class D, class F, class B, class T> std::shared_ptr<WallTimer<F>> create_wall_timer(const D &, F callback, const CallbackGroup::SharedPtr &, B &&node, T &&, bool = true, RI_HERE) { node_interfaces::ri_require_node(node).ri_time(callback, ri_file, ri_line); return std::make_shared<WallTimer<F>>(); }
+template <class D, class F, class B, class T, class = std::enable_if_t<std::is_pointer<std::decay_t<B>>::value>> std::shared_ptr<GenericTimer<F>> create_timer(Clock::SharedPtr, const D &, F callback, const CallbackGroup::SharedPtr &, B &&node, T &&, bool = true, RI_HERE) { node_interfaces::ri_require_node(node).ri_time(callback, ri_file, ri_line); return std::make_shared<GenericTimer<F>>(); }
+template <class N, class F> std::shared_ptr<GenericTimer<F>> create_timer(N &&node, Clock::SharedPtr, const Duration &, F callback, CallbackGroup::SharedPtr = nullptr, bool = true, RI_HERE) { node_interfaces::ri_require_node(node).ri_time(callback, ri_file, ri_line); return std::make_shared<GenericTimer<F>>(); }
+template <class B, class T, class F, class = RiIfInterface<T>> std::shared_ptr<GenericTimer<F>> create_timer(B &&node, T &&, Clock::SharedPtr, const Duration &, F callback, CallbackGroup::SharedPtr = nullptr, bool = true, RI_HERE) { node_interfaces::ri_require_node(node).ri_time(callback, ri_file, ri_line); return std::make_shared<GenericTimer<F>>(); }
+template <class S, class B, class V, class F, class Q> std::shared_ptr<Service<S>> create_service(B &&node, V &&, const std::string &, F &&callback, const Q &, CallbackGroup::SharedPtr = nullptr, RI_HERE) { return node_interfaces::ri_require_node(node).template ri_serve<S>(std::forward<F>(callback), ri_file, ri_line); }
+template <class S, class B, class G, class V, class... O> std::shared_ptr<Client<S>> create_client(B &&node, G &&, V &&, const std::string &name, O &&...) { return node_interfaces::ri_require_node(node).template create_client<S>(name); }
 
 struct InitOptions { bool shutdown_on_signal = true; };
 enum class SignalHandlerOptions { All, SigInt, SigTerm, None };
