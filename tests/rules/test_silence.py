@@ -1427,6 +1427,16 @@ def test_cmake_does_not_stop_for_what_a_submodule_that_is_not_checked_out_may_ha
     assert [finding.severity for finding in report.findings if finding.rule == "missing-package-call"] == expected
 
 
+@pytest.mark.parametrize(("before", "expected"), [(True, []), (False, ["warning"])])
+def test_cmake_does_not_stop_for_what_a_program_that_it_runs_before_may_write(before, expected, tmp_path):
+    run = "execute_process(COMMAND bash -c ${CMAKE_CURRENT_SOURCE_DIR}/fetch.sh)\n"
+    stop = 'if(NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/sdk/lift.h)\n  message(FATAL_ERROR "fetch it")\nendif()\n'
+    body = run + stop if before else stop + run
+    rule_cases.write_files(tmp_path, {**catkin("roscpp", body + "catkin_package()", "roscpp"), "fetch.sh": ""})
+    report = check(tmp_path, Options(targets=("noetic",), cache=tmp_path / "cache", jobs=1))
+    assert [finding.severity for finding in report.findings if finding.rule == "missing-package-call"] == expected
+
+
 @pytest.mark.parametrize(("ignored", "expected"), [("made.cmake", []), ("other.cmake", ["error"])])
 def test_cmake_may_include_what_git_ignores(ignored, expected, tmp_path):
     rule_cases.write_files(tmp_path, {**ament("include(made.cmake)"), ".gitignore": f"{ignored}\n"})
