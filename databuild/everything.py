@@ -246,7 +246,8 @@ STEPS = (
          lambda sources, data, own: _call("databuild.opencv_python", sources.opencv, "--output", data)
          if sources.opencv else None),
     BuildStep("superseded", (), ("python-std", "libraries", "pypi", "release-tags"),
-         lambda sources, data, own: _call("databuild.superseded", "--write") if sources.clones else None),
+         lambda sources, data, own: _call("databuild.superseded", "--write")
+         if sources.clones or sources.stubs or sources.apt or sources.pypi else None),
 )  # fmt: skip
 """Every builder, each behind those whose files it reads."""
 

@@ -58,29 +58,21 @@ def test_since_when_a_version_has_a_name(name, target, kind, since):
 @pytest.mark.parametrize(
     ("target", "platform", "said"),
     [
-        (
-            "humble",
-            "",
-            "apt: libpcl-dev; what its files hold is judged by debian bullseye (1.11.1) and debian bookworm (1.13.0),"
-            " where they agree",
-        ),
-        (
-            "jazzy",
-            "",
-            "apt: libpcl-dev; what its files hold is judged by debian bookworm (1.13.0) and debian trixie (1.15.0),"
-            " where they agree",
-        ),
+        ("humble", "", "; what its files hold is judged by debian bullseye (1.11.1) and debian bookworm (1.13.0), where"
+                       " they agree"),
+        ("jazzy", "", "; what its files hold is judged by debian bookworm (1.13.0) and debian trixie (1.15.0), where"
+                      " they agree"),
         # No release before Ubuntu 20.04 was read.
-        ("noetic", "", "apt: libpcl-dev; what its files hold is judged by debian bullseye (1.11.1), a later release"),
+        ("noetic", "", "; what its files hold is judged by debian bullseye (1.11.1), a later release"),
         # Debian stands for itself.
-        ("jazzy", 'platform = "debian trixie"', "apt: libpcl-dev"),
+        ("jazzy", 'platform = "debian trixie"', ""),
     ],
 )  # fmt: skip
 def test_which_releases_of_debian_stand_for_one_of_ubuntu(target, platform, said, tmp_path):
     (tmp_path / "package.xml").write_text(PACKAGE_OF_TWO)
     (tmp_path / "rosimpact.toml").write_text(f'[targets.mine]\ndistro = "{target}"\n{platform}')
     (answer,) = find_answers("libpcl-all-dev", tmp_path, ("mine",))
-    assert [offer.note for offer in answer.offers] == [said]
+    assert [offer.note for offer in answer.offers] == [f"apt: libpcl-dev{said}"]
 
 
 PACKAGE_OF_TWO = """<package format="2"><name>pool</name><version>1.0.0</version><description>pool</description>

@@ -166,6 +166,8 @@ class _OnMachine(CMakeTest):
         value = parse_constant(expanded)
         if value is not None or token.quoted:
             return value
+        if expanded == "CATKIN_ENABLE_TESTING" and self.environment.ros_version == "2":
+            return False  # catkin sets it
         if expanded in ("BUILD_TESTING", "CATKIN_ENABLE_TESTING"):
             return self.environment.testing
         if expanded.endswith("_FOUND"):

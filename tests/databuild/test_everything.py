@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 import zstandard
-from rosimpact.databuild.everything import STEPS, build_everything
+from rosimpact.databuild.everything import STEPS, Sources, build_everything
 from rosimpact.databuild.table_manifest import make_manifest
 from rosimpact.edges.console import UserError
 from rosimpact.impact.targets.tables import DATA, read_manifest
@@ -47,6 +47,15 @@ def test_what_has_sources_is_built_once(sources):
     assert run(sources) == {"find-modules": "kept"}
     assert run(sources, again=("find-modules",)) == {"find-modules": "made"}
     assert run(sources, "conda") == {}
+
+
+@pytest.mark.parametrize(
+    ("named", "runs"),
+    [({"pypi": True}, True), ({"apt": {"sid": "."}}, True), ({"clones": "."}, True), ({"commands": (".",)}, False)],
+)
+def test_rows_are_held_against_whatever_was_built(named, runs, tmp_path):
+    (superseded,) = (step for step in STEPS if step.name == "superseded")
+    assert (superseded.arguments(Sources(**named), tmp_path, tmp_path) is not None) == runs
 
 
 def test_a_step_is_run_again_when_what_it_reads_changed(sources, tmp_path):

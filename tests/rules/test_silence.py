@@ -900,6 +900,19 @@ SILENT = {
         ),
         ("test/slide.cpp", "#include <map>\n", ""),
     ),
+    "a header of the compiler that the source includes first": Silent(
+        "missing-standard-include",
+        ("jazzy",),
+        ament(
+            "find_package(PCL REQUIRED)\nadd_library(sled sled.cpp)\n"
+            "target_include_directories(sled PRIVATE ${PCL_INCLUDE_DIRS})\n"
+            "target_link_libraries(sled ${PCL_LIBRARIES})\ninstall(TARGETS sled DESTINATION lib)",
+            "depend:libpcl-all-dev",
+            sled_hpp="#pragma once\ninline float find_most() { return FLT_MAX; }\n",
+            sled_cpp='#include <float.h>\n#include <pcl/filters/voxel_grid.h>\n#include "sled.hpp"\n',
+        ),
+        ("sled.cpp", "#include <float.h>\n", ""),
+    ),
     "a header that comes through the package's own": Silent(
         "missing-standard-include",
         ("jazzy",),
@@ -1410,6 +1423,16 @@ def test_cmake_does_not_stop_for_what_a_submodule_that_is_not_checked_out_may_ha
     files = catkin("roscpp", stop + "catkin_package()", "roscpp")
     files |= {".gitmodules": f'[submodule "s"]\n\tpath = {folder}\n\turl = s.git\n'}
     rule_cases.write_files(tmp_path, files)
+    report = check(tmp_path, Options(targets=("noetic",), cache=tmp_path / "cache", jobs=1))
+    assert [finding.severity for finding in report.findings if finding.rule == "missing-package-call"] == expected
+
+
+@pytest.mark.parametrize(("before", "expected"), [(True, []), (False, ["warning"])])
+def test_cmake_does_not_stop_for_what_a_program_that_it_runs_before_may_write(before, expected, tmp_path):
+    run = "execute_process(COMMAND bash -c ${CMAKE_CURRENT_SOURCE_DIR}/fetch.sh)\n"
+    stop = 'if(NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/sdk/lift.h)\n  message(FATAL_ERROR "fetch it")\nendif()\n'
+    body = run + stop if before else stop + run
+    rule_cases.write_files(tmp_path, {**catkin("roscpp", body + "catkin_package()", "roscpp"), "fetch.sh": ""})
     report = check(tmp_path, Options(targets=("noetic",), cache=tmp_path / "cache", jobs=1))
     assert [finding.severity for finding in report.findings if finding.rule == "missing-package-call"] == expected
 

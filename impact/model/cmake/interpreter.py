@@ -1121,12 +1121,15 @@ class Interpreter:
         return True if name in self.definitions or (name in COMMANDS and name not in MODULE_OF) else None
 
     def has_path(self, path: str) -> bool | None:
-        """Whether a path of the package exists; None outside of it, and where that is not known."""
+        """Whether a path of the package exists; None outside of it, and where that is not known: what is not there may
+        have been written by a program that configuring has run before."""
         relative = self.make_relative(path) if path.startswith("/") else None
         if relative is None or not (self.is_in_package(relative) or relative == self.package_path):
             return None
         known = self.exists(relative)
-        return known if known is None else known or bool(self.glob(f"{relative}/*" if relative else "*", True))
+        if known is None or known or self.glob(f"{relative}/*" if relative else "*", True):
+            return known if known is None else True
+        return None if self.starts else False
 
     def set_match_groups(self, groups: tuple[str, ...]) -> None:
         """Sets CMAKE_MATCH_<n>."""

@@ -108,7 +108,7 @@ def _find_lost(
     # To a type that is announced, pointers may be made.
     pointed = 0 if need.whole or standard else machine.find_bits(list_announcing_headers(need.name))
     for reach, own in reaches:
-        if not wanted.isdisjoint(own):
+        if not wanted.isdisjoint(own | reach):
             continue
         if machine.brings(need.name, reach, year) if standard else machine.brings_any(bits, reach):
             continue

@@ -35,7 +35,7 @@ class CalledFunctions:
         """Of the functions that a program reaches those that it may call. roots: where it begins."""
         inside = frozenset(functions)
         known = set(roots) & inside
-        known.update(fn for fn in inside if not self._is_called_by_code(fn))
+        known.update(fn for fn in inside if not self.is_called_by_code(fn))
         # What else stands beside them may be handed on in ways that are not followed.
         beside = {fn for path in {one.source.path for one in inside} for fn in self.code.functions_in[path]}
         waiting = set(inside | beside) - known
@@ -65,7 +65,7 @@ class CalledFunctions:
         return inside - waiting
 
     @cache_method
-    def _is_called_by_code(self, fn: Fn) -> bool:
+    def is_called_by_code(self, fn: Fn) -> bool:
         """Whether a function runs only where the code itself calls it: no constructor, nothing that a language, or a
         class from outside of the code, calls by itself."""
         code, name = self.code, get_tail(fn.name)

@@ -310,6 +310,8 @@ class FlowCode:
                 self.functions.append(fn)
                 self.by_tail.setdefault(get_tail(fn.name), []).append(fn)
                 self.by_name.setdefault((source.path, fn.name), fn)
+        # Whether a function is the constructor of a class.
+        self._begins: dict[Fn, bool] = {}
         # By names alone; a later state of the code may take these over.
         self._class_of: dict[tuple[str, str, str], Cls | None] = before._class_of if before is not None else {}
         self._meant: dict[tuple[str, str, str], str] = before._meant if before is not None else {}
@@ -1266,8 +1268,12 @@ class FlowCode:
 
     def is_constructor(self, fn: Fn) -> bool:
         """Whether a function is the constructor of a class of the code."""
-        owner = self.find_owner(fn)
-        return owner is not None and get_tail(fn.name) in (get_tail(owner.name), "__init__")
+        known = self._begins.get(fn)
+        if known is None:
+            owner = self.find_owner(fn)
+            known = owner is not None and get_tail(fn.name) in (get_tail(owner.name), "__init__")
+            self._begins[fn] = known
+        return known
 
     def list_constructed(self, fn: Fn) -> Iterator[Made]:
         """Who makes objects by a constructor, with its arguments and line; nothing for other functions."""

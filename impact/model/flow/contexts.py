@@ -21,6 +21,8 @@ class Contexts:
 
     def __init__(self, code: FlowCode):
         self.code = code
+        # By the class and the id() of where its object is made, which the code keeps.
+        self._made: dict[tuple[str, int], dict[Fn, list[Made]]] = {}
 
     def list_contexts(self, fn: Fn, guard: int, values: FlowValues) -> list[FlowValues]:
         """What expressions are worth on each way to a place of a function, in each turn of the loops around. guard: of
@@ -109,7 +111,10 @@ class Contexts:
             constructors = [one for each in chain for one in self.code.list_functions(each) if self._begins(one)]
             if any(values.find_makers(one) is not None for one in constructors):
                 continue  # it is known already which objects these are
-            limited = values.limit_to_objects({**values.made, **self.find_made(chain, [row])})
+            made = self._made.get((cls.key, id(row)))
+            if made is None:
+                made = self._made[cls.key, id(row)] = self.find_made(chain, [row])
+            limited = values.limit_to_objects({**values.made, **made})
             guard = max(row[0].collect_guards(row[2]), default=-1)
             yield from ((row[0], turn) for turn in self._list_turns(row[0], guard, limited))
 

@@ -6,7 +6,7 @@ What belongs to which node, and what its names become there, is told by nodes.py
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple, get_args
 
@@ -31,6 +31,7 @@ from .turn_conditions import TurnConditions
 from .types import find_header_interface, find_interface, parse_flow_type
 from .values import (
     LOST,
+    NOT_PASSED,
     WHICH_TURN,
     FlowValue,
     FlowValues,
@@ -40,6 +41,7 @@ from .values import (
     spell_condition,
 )
 
+_EMPTY = "the name is empty"
 _NOT_YET = frozenset(("", "None", "nullptr"))
 _CONNECTS = ("connectInput", "reset")
 _PUTS = frozenset(("push_back", "emplace_back", "emplace", "insert", "append", "make_pair", "reset"))
@@ -170,6 +172,14 @@ def unparse(value: FlowExpr | None) -> str:
     return value.text
 
 
+def _select_lost(names: Sequence[FlowValue]) -> list[FlowValue]:
+    """Of names on one way to a call, where none is known, those that are there all the same; not what is empty."""
+    if any(one.text is not None for one in names):
+        return []
+    passed = (one for one in names if one.reason != _EMPTY and not one.reason.endswith(NOT_PASSED))
+    return [one for one in passed if not one.uncalled and not one.unpassed]
+
+
 class Sites:
     """All sites of a body of code."""
 
@@ -285,7 +295,8 @@ class Sites:
     def _find_names(self, use: FrameworkCall, values: FlowValues) -> tuple[str, tuple[FlowValue, ...]]:
         inside = values.limit_to_class(use.fn)
         spaces, names = self._list_spaces(use, inside), self._list_written_names(use, inside)
-        if len(spaces) > 1 or len(names) > 1 or any(one.reason == WHICH_TURN for one in names):
+        several = len(spaces) > 1 or len(names) > 1 or any(one.reason == WHICH_TURN for one in names)
+        if several or (any(one.text is not None for one in names) and self._has_turns(use, values)):
             ways = self.contexts.list_contexts(use.fn, use.call.guard, values)
             if len(ways) > 1:
                 rows = [(self._list_spaces(use, way), self._list_written_names(use, way)) for way in ways]
@@ -295,13 +306,36 @@ class Sites:
                 names = tuple(dict.fromkeys(one for _, own in rows for one in own))
                 known = tuple(one for one in names if one.text is not None)
                 in_part = tuple(one for one in names if one.shown)
+                lost = self._list_lost(use, zip(ways, rows, strict=True)) if known else []
                 names = known or in_part or names[:1] if not any(one.beside for one in names) else names
+                if lost and names is known:
+                    names = (*known, lost[0]._replace(beside=True, shown=""))
         if len(spaces) > 1:
             return "", self._join_spaces(spaces, names)
         prefix = spaces[0].text or ""
         if spaces[0].how != "literal" or spaces[0].only_if or prefix.startswith(LOST):
             return ("" if prefix != "~" else prefix), self._join_spaces(spaces, names)
         return prefix, names
+
+    @staticmethod
+    def _list_lost(
+        use: FrameworkCall, rows: Iterable[tuple[FlowValues, tuple[object, tuple[FlowValue, ...]]]]
+    ) -> list[FlowValue]:
+        """Of the names on the ways to a call those of which nothing is known, though the call is come to."""
+        found: list[FlowValue] = []
+        for way, (_, names) in rows:
+            lost = _select_lost(names)
+            if lost and not any(decided.holds is False for _, decided in way.decide_guards(use.fn, use.call.guard)):
+                found += lost
+        return found
+
+    def _has_turns(self, use: FrameworkCall, values: FlowValues) -> bool:
+        """Whether an endpoint of a name that is not written as such is made in several turns of a loop."""
+        named = self.calls.find_argument(use, use.row.topic)
+        if named is None or named.kind == "text":
+            return False
+        fn = use.fn
+        return any(values.count_turns(fn, place) > 1 for place in fn.list_guards_around(use.call.guard))
 
     def _list_spaces(self, use: FrameworkCall, values: FlowValues) -> list[FlowValue]:
         fixed = bool(use.row.topic) and isinstance(use.row.topic[0], str) and use.row.topic[0].startswith("=")
@@ -311,7 +345,7 @@ class Sites:
         """What the name of an endpoint may be where it is made."""
         found = join_opposites(values.evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line))
         # What is empty, or nothing, was not given yet.
-        empty = (FlowValue(None, "unresolved", "the name is empty"),)
+        empty = (FlowValue(None, "unresolved", _EMPTY),)
         return tuple(one for one in found if one.text not in _NOT_YET) or empty
 
     @staticmethod

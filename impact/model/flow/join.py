@@ -53,7 +53,7 @@ from .names import (
     resolve_ros2_name,
 )
 from .nodes import BuiltPackage, CodeReach, StartableProgram
-from .objects import NodeObjects, make_key
+from .objects import NodeObject, NodeObjects, make_key
 from .outside import list_outside
 from .plugin_hosts import PluginHosts, select_own
 from .qos import apply_overrides, find_qos, list_overridable
@@ -182,7 +182,7 @@ class Join:
             named = [use for use in self.calls.select_uses("node") if use.fn in functions]
             node, use = self._make_node(program, named, self.values.run(functions))
             one = Running(program, node, functions, classes, self.values)
-            several = program.kind in ("executable", "script", "component")
+            several = program.kind in ("executable", "script", "component", "plugin")
             found += self._split_by_object(one, use) if several else [one]
         return found
 
@@ -194,10 +194,34 @@ class Join:
             functions, classes = self.reach.find_reached(program.roots, (), others, cut)
             if not program.roots:
                 functions = {fn for fn in self.code.functions if fn.source.path in program.files}
-            return functions, classes
+            return functions | self._find_imported(functions), classes
         named = self.code.classes.get(get_tail(program.plugin), ())
         cls = next((one for one in named if one.source.path == program.path), None)
         return self.reach.find_reached(program.roots, [cls] if cls is not None else [], cut=cut)
+
+    def _find_imported(self, functions: set[Fn]) -> set[Fn]:
+        """The bodies of modules of Python that make endpoints where what runs imports them, by itself or through other
+        modules."""
+        if not self._making_bodies:
+            return set()
+        queue = list({fn.source.path: fn.source for fn in functions if fn.source.facts.language == "python"}.values())
+        seen = {source.path for source in queue}
+        while queue:
+            for module in self.code.modules.list_imported(queue.pop()):
+                if module.path not in seen:
+                    seen.add(module.path)
+                    queue.append(module)
+        return {fn for path in seen for fn in self._making_bodies.get(path, ())} - functions
+
+    @cached_property
+    def _making_bodies(self) -> dict[str, list[Fn]]:
+        """The bodies of modules of Python that make endpoints, by file, without those of programs: what names a node,
+        or does something only where it is started itself."""
+        uses = [site.use for site in self.sites.endpoints if not site.implied and not site.use.fn.name]
+        bodies = dict.fromkeys(use.fn for use in uses if use.fn.source.facts.language == "python")
+        naming = {use.fn for use in self.calls.select_uses("node")}
+        kept = (fn for fn in bodies if not any("__name__" in guard.text for guard in fn.facts.guards))
+        return group_pairs((fn.source.path, fn) for fn in kept if fn not in naming)
 
     def _leave_out_nodes(
         self, program: StartableProgram, functions: set[Fn], classes: set[str]
@@ -293,6 +317,10 @@ class Join:
         by itself, and talks in its own name. use: that names the first."""
         loaded = next(map(self.code.find_owner, running.program.roots), None) if running.program.plugin else None
         objects = self.objects.list_objects(running.functions, loaded)
+        if running.program.kind == "plugin":
+            is_node = loaded is None or self.objects.is_node(loaded)
+            yield from [running] if is_node or running.node.name else self._split_from_plugin(running, objects)
+            return
         first = [one for one in objects if one.name == running.node.name or use in one.uses]
         first = [one for one in first if one.name == running.node.name] or first
         if first and not is_open(first[0].name):
@@ -319,6 +347,16 @@ class Join:
             yield running._replace(
                 node=node, objects=one.keys - shared, values=one.values, fixed=one.fixed, remaps=one.remaps
             )
+
+    @staticmethod
+    def _split_from_plugin(running: Running, objects: Sequence[NodeObject]) -> Iterator[Running]:
+        """A plugin that is no node, and the nodes that it makes, as far as their names are known."""
+        named = [one for one in objects if not is_open(one.name)]
+        made = frozenset().union(*(one.keys for one in named))
+        yield running._replace(objects=frozenset(), others=made) if named else running
+        for one in named:
+            node = structs.replace(running.node, id=f"{running.node.id}{one.name}", name=one.name)
+            yield running._replace(node=node, objects=one.keys, values=one.values, fixed=one.fixed, remaps=one.remaps)
 
     def runs(self, running: Running, use: FrameworkCall, through: Sequence[FrameworkCall] = ()) -> bool:
         """Whether a node runs a use in one of its functions. through: the uses that make what it is called on, where it
@@ -432,9 +470,9 @@ class Join:
             below = f"{one.node.name}/"
             settings = {name[len(below) :]: text for name, text in settings.items() if name.startswith(below)}
         for load in self.hosts.list_hosted(one.functions, one.values, settings):
-            for part in self.list_running():
+            for part in self._loadable:
                 is_it = self._is_derived(part, load.name) if load.is_base else self._is_plugin(part.program, load.name)
-                if part.program.kind != "plugin" or not is_it or not part.functions:
+                if not is_it:
                     continue
 
                 def is_named(name: str, program: StartableProgram = part.program) -> bool:
@@ -449,6 +487,11 @@ class Join:
                         node=one.node, values=values.limit_to_calls({**values.way, **way}), instance=one.instance,
                         within=within, only_if=load.only_if,
                     )  # fmt: skip
+
+    @cached_property
+    def _loadable(self) -> list[Running]:
+        """The plugins that a program may load into itself."""
+        return [part for part in self.list_running() if part.program.kind == "plugin" and part.functions]
 
     def _is_derived(self, one: Running, base: str) -> bool:
         """Whether the class of a plugin derives from one of a name."""
@@ -893,15 +936,19 @@ class Join:
         """On what it depends that a node comes to a call, as Endpoint.only_if has it."""
         if isinstance(owner, Running) and not self._is_called(use.fn, owner):
             return f"something calls `{use.fn.name or 'it'}`"
-        texts = [guard.text for guard in self.list_guards(use.fn, use.call.guard) if guard.kind == "cpp"]
+        guards = self.list_guards(use.fn, use.call.guard)
+        texts = [guard.text for guard in guards if guard.kind == "cpp"]
+        texts += [f"something runs {guard.text}" for guard in guards if guard.kind == "never"]
         return " && ".join((*texts, *self._list_closed(use, owner)))
 
     def _is_called(self, fn: Fn, running: Running) -> bool:
         """Whether something that a node runs may call a function."""
-        if fn not in running.functions or not self.code.may_be_called(fn):
+        if fn not in running.functions:
             return False
         # What another program calls, or finds by name, is not seen from a plugin alone.
         if running.program.kind not in ("executable", "script", "component") or not running.program.roots:
+            return self.code.may_be_called(fn)
+        if not self.called.is_called_by_code(fn):
             return True
         known = self._called_of.get(id(running.functions))
         if known is None:

@@ -37,6 +37,7 @@ class PythonModules:
         self._known: dict[tuple[Kind, str, str, str], tuple[str, str] | None] = {}
         self._defined: dict[tuple[Kind, str], frozenset[str]] = {}
         self._modules: dict[tuple[tuple[str, ...], str], CodeFile | None] = {}
+        self._imported: dict[str, list[CodeFile]] = {}
 
     def find(self, kind: Kind, name: str, source: CodeFile, scope: str = "") -> tuple[str, str] | None:
         """The file and the name in it of what a name means in a file and scope; None for what is not in the code, or
@@ -90,6 +91,20 @@ class PythonModules:
             module = self.find_module(path[:cut], source, up)
             if module is not None and module is not source:
                 yield module, ".".join(path[cut:])
+
+    def list_imported(self, source: CodeFile) -> list[CodeFile]:
+        """The modules that a file imports, or imports something of."""
+        known = self._imported.get(source.path)
+        if known is not None:
+            return known
+        found: dict[str, CodeFile] = {}
+        for alias in source.facts.aliases:
+            name = alias.target.lstrip(".")
+            path, up = tuple(filter(None, name.split("."))), len(alias.target) - len(name)
+            for module in (self.find_module(path, source, up), self.find_module(path[:-1], source, up)):
+                if module is not None and module is not source:
+                    found[module.path] = module
+        return self._imported.setdefault(source.path, list(found.values()))
 
     def find_module(self, module: Sequence[str], source: CodeFile, up: int = 0) -> CodeFile | None:
         """The file that a module is to a file that imports it. up: dots before the module's name."""

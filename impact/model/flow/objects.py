@@ -106,15 +106,16 @@ class NodeObjects:
             for key, rows in self.code.constructions.items()
             if any(maker in functions for maker, _, _ in rows)
             for cls in self.code.list_class_bodies(key)[:1]
-            if self._is_node(cls)
+            if self.is_node(cls)
         ]
-        if loaded is not None and loaded not in made and self._is_node(loaded):
+        if loaded is not None and loaded not in made and self.is_node(loaded):
             made.insert(0, loaded)
         above = {one.key for cls in made for one in self.code.list_bases(cls)}
         alone = [self.code.list_class_bodies(key)[0] for key in by_class if key not in above]
         return [*made, *alone]
 
-    def _is_node(self, cls: Cls) -> bool:
+    def is_node(self, cls: Cls) -> bool:
+        """Whether objects of a class are nodes."""
         kinds = self.calls.find_kinds(FlowType(cls.name, (), cls), self.code.find_first(cls.source, self._anybody))
         return "node" in kinds or any(one.key in self._node_like for one in self.code.list_bases(cls))
 
@@ -252,7 +253,7 @@ class NodeObjects:
     def find_class_key(self, kind: FlowType, fn: Fn) -> set[str]:
         """The key for any object of a class of the code, if its objects are nodes."""
         cls = self.code.find_class_of(kind, fn) if kind.name else None
-        return {f"any {cls.key}"} if cls is not None and self._is_node(cls) else set()
+        return {f"any {cls.key}"} if cls is not None and self.is_node(cls) else set()
 
 
 class _Trace:

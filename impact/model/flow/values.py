@@ -26,6 +26,7 @@ from .given_lists import GivenLists
 from .graph import How
 from .literals import spell_number
 from .makers import Makers
+from .named_in_turns import DefaultGiven, NamesInTurns
 from .names import is_open, make_open_part, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
 from .reaching import LOOPS, FlowValue, ReachingValues
@@ -57,7 +58,7 @@ _MOST_KNOWN = 24
 _SAME = frozenset(
     ("c_str", "str", "as_string", "string_value", "value", "get_parameter_value", "strip", "lstrip", "rstrip", "data",
      "get_value", "string", "generic_string", "native", "to_string", "as_int", "as_bool", "as_double",
-     "as_string_array", "string_array_value")
+     "as_string_array", "string_array_value", "integer_value", "bool_value", "double_value")
 )  # fmt: skip
 _OF_FIRST = frozenset(("resolveName", "resolve_name", "remap_name", "resolve", "string", "str", "String", "move",
                        "forward", "ParameterValue", "expand_topic_or_service_name", "resolve_topic_name",
@@ -74,6 +75,7 @@ _EACH = FlowExpr("other")
 _COUNTER = "enumerate"
 TOO_MANY = "too many steps"
 WHICH_TURN = "which turn of the loop it is"
+NOT_PASSED = "has no known value that passes the conditions around"
 _TOGETHER = "these parts of the name belong together"
 _MEASURES = re.compile(r"([\w.]+)\.size\(\)\Z")
 _FLAG = re.compile(r"(!|not )?\s*\(?((?:self\.|this->|this\.)?[A-Za-z_]\w*)\)?")
@@ -320,7 +322,7 @@ class FlowValues:
 
     def _make_copy(self, *given) -> FlowValues:
         other = FlowValues(self.calls, *given)
-        for name in ("filled", "declared", "command_line", "origins", "parameter_words", "makers"):
+        for name in ("filled", "declared", "by_name", "command_line", "origins", "parameter_words", "makers"):
             other.__dict__[name] = getattr(self, name)
         other._budget, other._decided = self._budget, self._decided
         other._outer = self._outer
@@ -777,6 +779,18 @@ class FlowValues:
         return ObjectOrigins(self.code)
 
     @cached_property
+    def by_name(self) -> NamesInTurns:
+        """What loops declare and set under names that they put together."""
+        return NamesInTurns(self.calls, self._begin_anew, spell_condition)
+
+    def _begin_anew(self) -> FlowValues:
+        """The same code where nothing is known of who runs it."""
+        other = FlowValues(self.calls)
+        other.__dict__["by_name"] = self.by_name
+        other.find_prefix, other.find_outside_text = self.find_prefix, self.find_outside_text
+        return other
+
+    @cached_property
     def makers(self) -> Makers:
         """Who gives base classes their arguments."""
         return Makers(self.code)
@@ -856,7 +870,7 @@ class FlowValues:
             and (rests.is_made is None or rests.is_made == bool(made))
             and (not rests.turns or all(self.turns.get(loop) == turn for loop, turn in rests.turns.items()))
             and (rests.arguments is UNASKED or rests.arguments == self.arguments)
-            and all(self.list_settings_below(prefix) == given for prefix, given in rests.below.items())
+            and (not rests.below or all(self.list_settings_below(one) == given for one, given in rests.below.items()))
             and (not rests.settings or all(self.find_setting(name) == v for name, v in rests.settings.items()))
         )
 
@@ -914,6 +928,8 @@ class FlowValues:
     ) -> Iterator[FlowValue]:
         """The same, worked out."""
         written = self.code.list_writes(variable)
+        if variable.kind == "member" and (named := self.by_name.list_set(variable)):
+            written = [*written, *((one.fn, one.each) for one in named)]
         if origins is not None:
             written = [(w, each) for w, each in written if self.origins.may_be_of(each.target, w, origins)]
         if variable.kind == "member":
@@ -991,7 +1007,7 @@ class FlowValues:
             lambda place: _spell_guards([fn.facts.guards[place]], negated=True),
         )
         if found.held and not values:
-            yield FlowValue(None, "given", f"`{variable.name}` has no known value that passes the conditions around")
+            yield FlowValue(None, "given", f"`{variable.name}` {NOT_PASSED}")
         yield from _restore_alone(values)
 
     def _select_overridden(self, callee: str, fn: Fn) -> list[Fn]:
@@ -1105,6 +1121,8 @@ class FlowValues:
     ) -> list[FlowValue]:  # fmt: skip
         """What a function writes into a variable, whichever of it holds where another function reads it."""
         found = ReachingValues(writer, (), lambda path: self.code.identify(path, writer) == variable)
+        if variable.kind == "global" and self._runs_once(writer, rows):
+            return self._follow_module(writer, rows, found, seen)
         sure = [use for use, values in filled if use.fn is writer and _is_sure(values)]
         tested = False
         for each in rows:
@@ -1115,6 +1133,46 @@ class FlowValues:
                 tested = found.exclude(each.guard) or tested
                 found.add(_mark_unknown(self._evaluate_written(each, writer, origins, seen)), each.guard)
         return found.list_values() if tested else _restore_alone(found.list_values())
+
+    def _runs_once(self, fn: Fn, rows: list[Assignment]) -> bool:
+        """Whether a function is the body of a module of Python that gives a variable all of some values before it calls
+        anything of the code."""
+        if fn.name or fn.source.facts.language != "python" or len(rows) < 2:
+            return False
+        if any(each.operator != "=" or each.key is not None or "." in each.target for each in rows):
+            return False
+        lines = [each.line for each in rows]
+        between = (call for call in fn.facts.calls if min(lines) < call.line <= max(lines))
+        loops = (fn.facts.guards[place].kind for each in rows for place in fn.list_guards_around(each.guard))
+        return LOOPS.isdisjoint(loops) and not any(self.code.list_targets(call.callee, fn) for call in between)
+
+    def _follow_module(self, fn: Fn, rows: list[Assignment], found: ReachingValues, seen: tuple) -> list[FlowValue]:
+        """What a variable is worth behind the body of its module, which assigns it one value after the other."""
+        for each in sorted(rows, key=lambda row: row.line):
+            holds = self._decide_by_constants(each.guard, fn, seen)
+            if holds is False or self.decide_branch(each.guard, fn, seen).holds is False:
+                continue
+            values = _mark_unknown(self._evaluate_written(each, fn, None, seen))
+            found.assign(values, -1 if holds else each.guard)
+        return _restore_alone(
+            found.list_chosen(
+                lambda places: _spell_guards([fn.facts.guards[place] for place in places]),
+                lambda place: _spell_guards([fn.facts.guards[place]], negated=True),
+            )
+        )
+
+    def _decide_by_constants(self, guard: int, fn: Fn, seen: tuple) -> bool | None:
+        """Whether a place in the body of a module is come to, as far as constants of the code alone decide it."""
+        opens = True
+        for place in fn.list_guards_around(guard):
+            one = fn.facts.guards[place]
+            asks = one.kind in ASKING and not one.text.startswith("except ")
+            decided = self._decide_guard(one, fn, seen) if asks and not self._is_asking(one, fn, seen) else None
+            holds = decided.holds if decided is not None and decided.hows <= {"literal"} else None
+            if holds is False:
+                return False
+            opens = opens and holds is True
+        return opens or None
 
     def _follow(
         self, each: Assignment, fn: Fn, found: ReachingValues, origins: Origins | None, seen: tuple
@@ -1202,6 +1260,13 @@ class FlowValues:
         self, each: Assignment, writer: Fn, origins: Origins | None, seen: tuple
     ) -> Iterator[FlowValue]:  # fmt: skip
         """What an assignment makes of a variable."""
+        named = self.by_name.find_row(each) if each.operator == "=" else None
+        if named is not None:
+            values = self._limit_to_way(named.turns, named.way)
+            values._left = self._left
+            yield from put_under_more(values._evaluate(each.value, writer, each.line, seen), named.only_if)
+            self._left = values._left
+            return
         if each.operator == "=":
             if each.target.startswith("this.") and each.value.kind == "list" and len(each.value.parts) > 1:
                 return
@@ -1261,9 +1326,13 @@ class FlowValues:
     def _evaluate_constant(self, variable: Variable, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
         name = variable.name
         found = self.code.list_constants(variable, fn)
+        # The preprocessor, or the program that is built, chooses one of several.
+        several = len({constant.value for constant, _ in found if constant.value is not None}) > 1
+        condition = f"`{name}` is defined so" if several else ""
         for constant, source in found:
             if constant.value is not None:
-                yield from self._evaluate(constant.value, self.code.find_first(source, fn), constant.line, seen)
+                holder = self.code.find_first(source, fn)
+                yield from put_under_more(self._evaluate(constant.value, holder, constant.line, seen), condition)
         if found:
             return
         if "::" in name or "." in name:
@@ -1393,6 +1462,11 @@ class FlowValues:
             if chosen:
                 for one in chosen:
                     yield from self._evaluate_listed(one, (*seen, ("element", one.value)))
+                return
+            if python and last == "get" and len(value.parts) == 2 and not head.endswith("()"):
+                # What a file holds that the program reads is not known; this is there where it lacks the key.
+                yield from self._evaluate(value.parts[1], fn, line, seen)
+                yield FlowValue(None, "unresolved", f"what `{value.text}` gives is not known", beside=True)
                 return
         if python and last == "format" and head and not head.endswith("()") and value.receiver is None:
             yield from self._evaluate_format(value, head, fn, line, seen)
@@ -1627,10 +1701,14 @@ class FlowValues:
         return given.text if given is not None else None, below
 
     def _find_parameter_name(self, use: FrameworkCall, seen: tuple) -> str:
-        """The name that a use gives a parameter, empty where it is not known."""
+        """The name that a use gives a parameter, the first of several; empty where it is not known."""
+        names = self._list_parameter_names(use, seen)
+        return names[0].text or "" if names else ""
+
+    def _list_parameter_names(self, use: FrameworkCall, seen: tuple) -> list[FlowValue]:
+        """The names that a use gives a parameter."""
         written = self.calls.find_argument(use, use.row.topic)
-        names = [one.text for one in self._evaluate(written, use.fn, use.call.line, seen)]
-        return names[0] or "" if names else ""
+        return list({one.text or "": one for one in self._evaluate(written, use.fn, use.call.line, seen)}.values())
 
     def _find_setting_of(self, use: FrameworkCall, name: str) -> FlowValue | None:
         """What a launch sets the parameter of a use to; None for nothing."""
@@ -1653,50 +1731,91 @@ class FlowValues:
         if several:
             yield from several
             return
-        name = self._find_parameter_name(use, seen)
+        names = self._list_parameter_names(use, seen)
+        for name in names[:_MOST] or (FlowValue("", "given"),):
+            found = self._evaluate_named(use, name.text or "", seen)
+            # Of a parameter that is one of several, each is as certain as its name.
+            yield from put_under_more(found, name.only_if) if len(names) > 1 else found
+
+    def _evaluate_named(self, use: FrameworkCall, name: str, seen: tuple) -> Iterator[FlowValue]:
+        """The same under one of the names that the use may give the parameter."""
         given = self._find_setting_of(use, name)
         if given is not None:
             yield given
             return
         default = self.calls.find_argument(use, use.row.default) if use.row.default else None
         target = self.calls.find_argument(use, use.row.variable) if use.row.variable else None
-        if default is not None and not (default.kind == "name" and default == target):
+        if default is not None and not (default.kind == "name" and default == target) and not _is_type(default):
             for one in self._evaluate(default, use.fn, use.call.line, seen):
                 yield one if one.text is None else one._replace(how="default")
             return
         yielded = False
         mark = ("parameter", name)
-        declared = self.declared.get(name, ()) if name and not self._is_in(mark, seen) else ()
-        others = [other for other in declared if other.call is not use.call]
+        declared = self._list_declared(name) if name and not self._is_in(mark, seen) else ()
+        others = [other for other in declared if other.use.call is not use.call]
         # Of a program by its own code: programs of one package may declare a parameter each for itself.
-        near = [other for other in others if other.fn.source is use.fn.source]
+        near = [other for other in others if other.use.fn.source is use.fn.source]
         for other in near or self._select_running(others) or others:
-            if other.fn.source.package != use.fn.source.package:
+            if other.use.fn.source.package != use.fn.source.package:
                 continue
-            for one in self._evaluate_parameter(other, (*seen, mark)):
+            for one in self._evaluate_declaration(other, name, (*seen, mark)):
                 if one.text is not None:
                     yielded = True
                     yield one
-        if not yielded:
+        if not yielded and any(map(self._is_typed_alone, (DefaultGiven(use), *others))):
+            # It has another value than what stands where it is missing.
+            yield FlowValue(
+                None, "unresolved", f"{NO_DEFAULT}`{name}` is declared without a value: it is given at start"
+            )
+        elif not yielded:
             reason = f"{NO_DEFAULT}`{name}` has no default here" if name else "which parameter it is, is not known"
             yield FlowValue(None, "given", reason)
 
-    def _select_running(self, uses: list[FrameworkCall]) -> list[FrameworkCall]:
-        """The uses in functions that run, where it is known which do."""
+    def _is_typed_alone(self, one: DefaultGiven) -> bool:
+        """Whether a parameter is declared with its type alone."""
+        default = self.calls.find_argument(one.use, one.use.row.default) if one.use.row.default else None
+        return default is not None and _is_type(default)
+
+    def _evaluate_declaration(self, one: DefaultGiven, name: str, seen: tuple) -> Iterator[FlowValue]:
+        """The default that a declaration gives a parameter, in the turns of the loops in which it gives it to this
+        one."""
+        values = self._limit_to_way(one.turns, one.way)
+        values._left = self._left
+        given = self.calls.find_argument(one.use, one.use.row.default) if one.use.row.default else None
+        if given is not None and given.kind == "name":
+            # The variable that asks may be the one that had the default before.
+            variable = self.code.identify(given.text, one.use.fn)
+            seen = self._leave_out(variable, seen) if variable.kind == "local" else seen
+        yield from values._evaluate_named(one.use, name, seen)
+        self._left = values._left
+
+    def _limit_to_way(self, turns: Mapping[tuple[str, int], int], way: Mapping[Fn, FlowCall]) -> FlowValues:
+        """The same code in some turns of loops and through some calls; itself for none."""
+        if not turns and not way:
+            return self
+        chosen, calls = {**self.turns, **turns}, {**self.way, **way}
+        return self._make_copy(self.settings, self.arguments, calls, self.within, self.node, self.made, chosen)
+
+    def _list_declared(self, name: str) -> Sequence[DefaultGiven]:
+        """The declarations of a parameter, and the reads with a default."""
+        return [*self.declared.get(name, ()), *self.by_name.list_declared(name)]
+
+    def _select_running(self, declared: list[DefaultGiven]) -> list[DefaultGiven]:
+        """The declarations in functions that run, where it is known which do."""
         if self._works:
             self._works[-1].is_limited = self.within is not None
-        return [use for use in uses if self.runs(use.fn)] if self.within is not None else []
+        return [one for one in declared if self.runs(one.use.fn)] if self.within is not None else []
 
     @cached_property
-    def declared(self) -> dict[str, list[FrameworkCall]]:
+    def declared(self) -> dict[str, list[DefaultGiven]]:
         """Declarations of parameters and reads with a default, by their literal names."""
-        found: dict[str, list[FrameworkCall]] = {}
+        found: dict[str, list[DefaultGiven]] = {}
         for use in self.calls.select_uses("parameter"):
             if self.calls.find_argument(use, use.row.default) is None:
                 continue
             name = self.calls.find_argument(use, use.row.topic)
             if name is not None and name.kind == "text":
-                found.setdefault(name.text, []).append(use)
+                found.setdefault(name.text, []).append(DefaultGiven(use))
         return found
 
     def list_filling(self, variable: Variable) -> list[FrameworkCall]:
@@ -1843,6 +1962,11 @@ def _format(value: FlowValue, spec: str | None) -> FlowValue:
     if spec is None or not _COUNTED.fullmatch(spec) or not is_number(value.text or ""):
         return FlowValue(None, "unresolved", f"how `{spec or '{}'}` writes it is not followed")
     return value._replace(text=format(int(value.text or ""), spec))
+
+
+def _is_type(value: FlowExpr) -> bool:
+    """Whether what stands for a default is the type of the parameter alone: `Parameter.Type.INTEGER`."""
+    return value.kind == "name" and value.text.rpartition(".")[0].endswith("Parameter.Type")
 
 
 def _is_sure(values: list[FlowValue]) -> bool:

@@ -130,3 +130,40 @@ main()
 """})  # fmt: skip
     made = {(one.topic, one.only_if) for one in found.endpoints if one.role == "publisher" and not one.implied}
     assert made == {("/out", "")}
+
+
+@pytest.mark.parametrize(
+    ("leave", "expected"),
+    [
+        ("return", "something runs after return"),
+        ("raise ValueError", "something runs after raise"),
+        ("sys.exit(1)", "something runs after exit"),
+        ("if self.count_publishers('/a'): return", ""),
+        ("pass", ""),
+    ],
+)
+def test_nothing_behind_what_surely_leaves_a_function_runs(leave, expected):
+    found = graph({"p/talker.py": HEAD + f"""
+import sys
+
+
+class Talker(Node):
+    def __init__(self):
+        super().__init__("talker")
+        self.create_publisher(Bool, "/a", 1)
+        {leave}
+        self.create_publisher(Bool, "/b", 1)
+
+
+rclpy.init()
+rclpy.spin(Talker())
+"""})  # fmt: skip
+    made = {one.topic: one.only_if for one in found.endpoints if one.role == "publisher" and not one.implied}
+    assert made == {"/a": "", "/b": expected}
+
+
+def test_in_cpp_neither():
+    code = CPP.replace("BODY", 'return; pub_ = create_publisher<std_msgs::msg::Bool>("late", 1);')
+    found = graph({"p/robot.cpp": code})
+    made = {one.topic: one.only_if for one in found.endpoints if one.role == "publisher" and not one.implied}
+    assert made["/late"] == "something runs after return"

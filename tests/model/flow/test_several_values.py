@@ -100,3 +100,31 @@ def test_methods_that_run(begin, main, kind, expected):
     found = graph({"p/robot.cpp": code})
     made = [one for one in found.endpoints if one.role == "publisher" and not one.implied]
     assert {one.topic for one in made if not one.only_if} == expected
+
+
+MACROS = """
+    #include <rclcpp/rclcpp.hpp>
+    #ifdef SIMULATED
+    #define TOPIC "simulated"
+    #else
+    #define TOPIC OTHER
+    #endif
+    int main(int argc, char ** argv) {
+      rclcpp::init(argc, argv);
+      auto node = std::make_shared<rclcpp::Node>("robot");
+      auto pub = node->create_publisher<std_msgs::msg::Bool>(TOPIC, 1);
+    }
+"""
+
+
+@pytest.mark.parametrize(
+    ("other", "expected"),
+    [
+        ('"real"', {("/simulated", "`TOPIC` is defined so"), ("/real", "`TOPIC` is defined so")}),
+        ('"simulated"', {("/simulated", "")}),
+    ],
+)
+def test_which_of_two_definitions_of_a_macro_holds_is_not_known(other, expected):
+    found = graph({"p/robot.cpp": MACROS.replace("OTHER", other)})
+    made = [one for one in found.endpoints if one.role == "publisher" and not one.implied]
+    assert {(one.topic, one.only_if) for one in made} == expected
