@@ -1202,8 +1202,8 @@ SILENT = {
     "a library that nobody knows": Silent(
         "undeclared-package",
         ("humble",),
-        ament("find_package(our_fingers REQUIRED)"),
-        ("CMakeLists.txt", "our_fingers", "our_fingers_msgs"),
+        ament("find_package(OurFingers REQUIRED)"),
+        ("CMakeLists.txt", "OurFingers", "our_fingers"),
     ),
     "a target that catkin makes for a test, called after its file": Silent(
         "nonexistent-target",

@@ -996,8 +996,10 @@ class FlowCode:
     def is_called_by_code(self, cls: Cls, name: str) -> bool:
         """Whether nothing but the code calls a method of a class: all of its bases are in the code, or are known not to
         call it."""
-        bases = {get_tail(parse_flow_type(base).name) for one in self.list_bases(cls) for base in one.facts.bases}
-        return all(base in self.classes or (base in _CALLED_BY and name not in _CALLED_BY[base]) for base in bases)
+        every = ((base, one) for one in self.list_bases(cls) for base in one.facts.bases)
+        outside = (base for base, one in every if self.find_class(base, one.source, one.name) is None)
+        known = (_CALLED_BY.get(get_tail(parse_flow_type(base).name)) for base in outside)
+        return all(called is not None and name not in called for called in known)
 
     def is_idle(self, fn: Fn) -> bool:
         """Whether a function is a method that nothing calls, of a class that nobody else can call methods of, and that

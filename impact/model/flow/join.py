@@ -65,6 +65,7 @@ _WORD = re.compile(r"[A-Za-z_]\w*")
 _OVERRIDES = re.compile(r"qos_overrides\.").match
 # The condition of a name that code gives which a node does not run.
 _PASSED = "something that runs passes the name"
+_LOADED = "what loads it is in no namespace"
 _MOST_WAYS = 16
 _DEEPEST = 10
 _DEEPEST_GIVEN = 3
@@ -472,8 +473,8 @@ class Join:
         for load in self.hosts.list_hosted(one.functions, one.values, settings):
             for part in self._loadable:
                 is_it = self._is_derived(part, load.name) if load.is_base else self._is_plugin(part.program, load.name)
-                if not is_it:
-                    continue
+                if not is_it or part.objects:
+                    continue  # a node that it makes itself is none of those that load it
 
                 def is_named(name: str, program: StartableProgram = part.program) -> bool:
                     return self._is_plugin(program, name)
@@ -923,8 +924,8 @@ class Join:
             qos = apply_overrides(qos, topic, site.role, policies, owner.values.settings) if policies else qos
         replaced = "the name is not replaced" if value.how == "partly" else ""
         loads = owner.only_if if isinstance(owner, Running) else ""
-        conditions = (loads, "" if site.implied else self._describe_condition(use, owner), value.only_if, replaced)
-        only_if = _join_conditions(*conditions)
+        condition = "" if site.implied else self._describe_condition(use, owner)
+        only_if = _join_conditions(loads, _describe_loading(value, owner), condition, value.only_if, replaced)
         return Endpoint(
             site.role, node.id if node else "", topic, type_, *_get_place(use), site.written, how, qos,
             _make_callback(site.callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
@@ -1163,6 +1164,15 @@ class _Count:
         else:
             self.resolved += 1
             self.by_default += all(value.how == "default" for site in sites for value in site.names)
+
+
+def _describe_loading(value: FlowValue, owner: Owner) -> str:
+    """On what a name depends that a plugin gives in a node which it makes itself: in the program that loads it, that is
+    in the namespace of all nodes."""
+    if not isinstance(owner, Running) or owner.program.kind != "plugin" or owner.objects is None:
+        return ""
+    relative = value.text is not None and value.text[:1] != "/"
+    return _LOADED if relative and owner.node.name and "namespace" not in owner.fixed else ""
 
 
 def _note_loaded(node: Node, parts: Iterable[Running]) -> Node:

@@ -20,21 +20,24 @@ CODE = """
     };
     PLUGINLIB_EXPORT_CLASS(Board, hardware_interface::SystemInterface)
 """
+LOADED = "what loads it is in no namespace"
 PUB = 'pub_ = node_->create_publisher<std_msgs::msg::Bool>("{}", 1);'
 
 
 @pytest.mark.parametrize(("body", "expected"), [
-    ('node_ = std::make_shared<rclcpp::Node>("aux");' + PUB.format("~/state"), {("/aux", "/aux/state")}),
-    ('if (!node_) { node_ = rclcpp::Node::make_shared("aux"); }' + PUB.format("state"), {("/aux", "/state")}),
-    ('node_ = std::make_shared<rclcpp::Node>("aux", "arm");' + PUB.format("state"), {("/arm/aux", "/arm/state")}),
+    ('node_ = std::make_shared<rclcpp::Node>("aux");' + PUB.format("~/state"), {("/aux", "/aux/state", LOADED)}),
+    ('if (!node_) { node_ = rclcpp::Node::make_shared("aux"); }' + PUB.format("state"), {("/aux", "/state", LOADED)}),
+    ('node_ = std::make_shared<rclcpp::Node>("aux", "arm");' + PUB.format("state"),
+     {("/arm/aux", "/arm/state", LOADED)}),
     ('node_ = std::make_shared<rclcpp::Node>("aux");\nother_ = std::make_shared<rclcpp::Node>("more");'
      + PUB.format("~/a") + PUB.format("~/b").replace("node_->", "other_->"),
-     {("/aux", "/aux/a"), ("/more", "/more/b")}),
+     {("/aux", "/aux/a", LOADED), ("/more", "/more/b", LOADED)}),
+    ('node_ = std::make_shared<rclcpp::Node>("aux");' + PUB.format("/state"), {("/aux", "/state", "")}),
     # Of a name that is not known it is as before.
-    ("node_ = std::make_shared<rclcpp::Node>(ask());" + PUB.format("~/state"), {("", "/<Board>/state")}),
+    ("node_ = std::make_shared<rclcpp::Node>(ask());" + PUB.format("~/state"), {("", "/<Board>/state", "")}),
 ])  # fmt: skip
 def test_nodes_that_a_plugin_makes(body, expected):
     found = graph({"p/board.cpp": CODE.replace("BODY", body)})
     names = {node.id: node.name for node in found.nodes}
     made = (one for one in found.endpoints if one.role == "publisher" and not one.implied)
-    assert {(names[one.node], one.topic) for one in made} == expected
+    assert {(names[one.node], one.topic, one.only_if) for one in made} == expected

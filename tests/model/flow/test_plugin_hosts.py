@@ -161,3 +161,17 @@ def test_a_parameter_file_is_for_the_node_that_a_launch_file_gives_it(tmp_path):
     parameters = 'os.path.join(get_package_share_directory("host"), "config", "p.yaml")'
     made = list_made(tmp_path, "", parameters, 'package="nav2_planner", executable="planner_server"')
     assert {node for node, _, _ in made} == {"/robot/it", "host/host::Red"}
+
+
+def test_a_node_that_a_loaded_plugin_makes_is_none_of_its_host(tmp_path, monkeypatch):
+    own = """
+        own_ = std::make_shared<rclcpp::Node>("own");
+        q_ = own_->create_publisher<Bool>("/of_own", 1);
+        p_ = node->create_publisher<Bool>("~/" + name + "/blue", 1);
+    """
+    plug = PLUG.replace('p_ = node->create_publisher<Bool>("~/" + name + "/blue", 1);', own)
+    monkeypatch.setattr(f"{__name__}.PLUG", plug)
+    body = 'layer_ = loader_.createSharedInstance("host/Blue");\nlayer_->initialize(shared_from_this(), "a");'
+    assert {row[:2] for row in list_made(tmp_path, body, "{}") if "red" not in row[1]} == {
+        ("/robot/it", "/robot/it/a/blue"), ("host/host::Blue/own", "/of_own"),
+    }  # fmt: skip

@@ -102,6 +102,21 @@ def test_methods_that_run(begin, main, kind, expected):
     assert {one.topic for one in made if not one.only_if} == expected
 
 
+def test_a_class_of_the_code_that_is_called_like_its_base_is_not_that():
+    code = CPP.replace("BEGIN", "").replace("MAIN", "").replace("KIND", "nav::LifecycleNode").replace(
+        "    class Base", """    namespace nav {
+    class LifecycleNode : public rclcpp_lifecycle::LifecycleNode {
+     public:
+      explicit LifecycleNode(const std::string & name) : rclcpp_lifecycle::LifecycleNode(name) {}
+    };
+    }
+    class Base""", 1,
+    ).replace('nav::LifecycleNode("robot")', 'LifecycleNode("robot")')
+    found = graph({"p/robot.cpp": code})
+    made = [one for one in found.endpoints if one.role == "publisher" and not one.implied]
+    assert {one.topic for one in made if not one.only_if} == {"/configured"}
+
+
 MACROS = """
     #include <rclcpp/rclcpp.hpp>
     #ifdef SIMULATED
