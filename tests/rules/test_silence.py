@@ -1437,6 +1437,17 @@ def test_cmake_does_not_stop_for_what_a_program_that_it_runs_before_may_write(be
     assert [finding.severity for finding in report.findings if finding.rule == "missing-package-call"] == expected
 
 
+@pytest.mark.parametrize(("run", "expected"), [("git clone https://example.org/x.git FFmpeg", "warning"), ("", "error")])
+def test_a_program_that_cmake_runs_may_fetch_the_headers_of_a_folder_that_is_searched(run, expected, tmp_path):
+    body = f"execute_process(COMMAND {run})\n" if run else ""
+    body += "include_directories(FFmpeg)\nadd_executable(m m.cpp)\ninstall(TARGETS m DESTINATION lib/${PROJECT_NAME})"
+    files = ament(body, m_cpp="#include <libavcodec/avcodec.h>\nint main() { return 0; }\n")
+    rule_cases.write_files(tmp_path, files)
+    report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
+    found = [finding for finding in report.findings if finding.subject in ("ffmpeg", "libavcodec-dev")]
+    assert [finding.severity for finding in found] == [expected], report.findings
+
+
 @pytest.mark.parametrize(("ignored", "expected"), [("made.cmake", []), ("other.cmake", ["error"])])
 def test_cmake_may_include_what_git_ignores(ignored, expected, tmp_path):
     rule_cases.write_files(tmp_path, {**ament("include(made.cmake)"), ".gitignore": f"{ignored}\n"})

@@ -156,6 +156,8 @@ def _collect_include_doubts(view: TargetView, package: Package, need: Need, name
             return (Doubt.UNCOMPILED,)
         return () if _stops_another(view, package, need) else (Doubt.DISTURBS,)
     doubts = (*_collect_unknown_doubts(view, package, need, name), *collect_compile_doubts(view, package, need))
+    if _may_fetch_headers(package):
+        doubts = (*doubts, Doubt.INCOMPLETE)
     # One in no folder of headers is called so by chance, where a library has its headers without a folder.
     bare = "/" not in need.subject and need.subject not in view.workspace.rooted_headers
     if bare and first.name in view.workspace.packages:
@@ -166,6 +168,13 @@ def _collect_include_doubts(view: TargetView, package: Package, need: Need, name
     if not first.sure and not view.generates_header(first.name, need.subject):
         return doubts if view.has_released_header(first.name, need.subject) is not False else (*doubts, Doubt.AMBIGUOUS)
     return doubts
+
+
+def _may_fetch_headers(package: Package) -> bool:
+    """Whether configuring runs programs, and a folder of the package is searched that is not there: they may bring it."""
+    build = package.build
+    inside = (posixpath.normpath(path) for path, _ in build.include_dirs if path and path[0] not in "/$~.<")
+    return bool(build.starts) and any(path not in package.folders for path in inside)
 
 
 def _collect_unknown_doubts(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
