@@ -18,8 +18,8 @@ Use instead
     file(GLOB sources src/tracking/*.cpp)
 
 Not reported
-    Patterns in folders that were not read, such as submodules, and below those that the build makes; targets that
-    target_sources() gives more; packages with code that is not read.
+    Patterns in folders that were not read, such as submodules, outside of the package, and below those that the build
+    makes; targets that target_sources() gives more; packages with code that is not read.
 """
 
 import posixpath
@@ -47,8 +47,9 @@ def target_without_sources(view: TargetView, package: Package):
         if target.sources or any(link.how == "objects" for link in target.links)
     }
     for refused in list_refused(view, package, "no sources"):
-        inside = all(is_absent(view, package, posixpath.normpath(pattern)) for pattern in refused.patterns)
-        if inside and refused.name not in filled:
+        patterns = [posixpath.normpath(pattern) for pattern in refused.patterns]
+        inside = all(pattern.startswith(f"{package.path}/".lstrip("/")) for pattern in patterns)
+        if inside and all(is_absent(view, package, pattern) for pattern in patterns) and refused.name not in filled:
             doubts = list_place_doubts(view, "build", refused.conditions)
             data = {"pattern": package.strip_path(refused.patterns[0])}
             yield Diagnostic(refused.at, refused.name, package.name, data, "pattern", doubts)
