@@ -67,9 +67,12 @@ _NAME_ERRORS = frozenset(("AttributeError", "NameError", "Exception", "BaseExcep
 _ANY_ERRORS = frozenset(("Exception", "BaseException"))
 # A test that mentions one of these tells about the interpreter or the machine rather than about the run.
 _ABOUT_MACHINE = re.compile(
-    r"version|PY[23]|PYTHON|TYPE_CHECKING|platform|os\.name|environ|getenv|ROS_|distro|hasattr|find_spec|find_loader",
+    r"version|PY[23]|PYTHON|TYPE_CHECKING|platform|os\.name|environ|getenv|ROS_|distro|hasattr|__slots__|field_types|"
+    r"find_spec|find_loader",
     re.IGNORECASE,
 )
+# What tells whether an object, or a message, has a field.
+_ABOUT_FIELDS = re.compile(r"\bhasattr\b|__slots__|field_types\b")
 _ROS_VARIABLE = re.compile(r"(?:environ|getenv)\b.*\bROS_(?:DISTRO|VERSION|PYTHON_VERSION)\b", re.DOTALL)
 _READING = frozenset((ast.Call, ast.Subscript))
 _COMMAND_CALLS = frozenset((
@@ -543,6 +546,10 @@ class PythonReader(ObjectUses, SourceText):
 
     def visit_FunctionDef(self, node) -> None:
         self.scope.bound.add(node.name)
+        self.scope.machine.pop(node.name, None)
+        answer = node.body[-1].value if isinstance(node.body[-1], ast.Return) else None
+        if answer is not None and _ABOUT_FIELDS.search(self.format_source(answer)):
+            self.scope.machine[node.name] = "hasattr"
         self.walk_all(node.decorator_list)
         arguments = node.args
         if arguments.posonlyargs:
