@@ -69,7 +69,9 @@ def test_a_file_name_that_is_no_utf8_comes_back_from_a_process(tmp_path, at_once
     Path(os.fsdecode(os.fsencode(ws / "link_0/src") + b"/caf\xe9.txt")).write_text("")
     after = check(ws, Options(("jazzy",), jobs=3, cache=tmp_path / "cache"))
     assert before.findings and after.failure == ""
-    assert [f for f in after.findings if f.rule != "unreadable-file"] == list(before.findings)
+    # What was not read may have the packages that nobody is known to have.
+    kept = [f for f in before.findings if not f.subject.startswith("not_to_be_found")]
+    assert [f for f in after.findings if f.rule != "unreadable-file"] == kept
 
 
 @needs_fork

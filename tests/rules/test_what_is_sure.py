@@ -32,7 +32,7 @@ def severities(folder: Path, rule: str, subject: str, target: str, **files: str)
         ("noetic", "catkin_add_nosetests(test/timing.py)\n", {"error"}),
         ("noetic", "", set()),  # no build runs it
         # Noetic's Python 3 lies ahead.
-        ("melodic", "catkin_add_nosetests(test/timing.py)\n", {"warning"}),
+        ("melodic@2022-06-01", "catkin_add_nosetests(test/timing.py)\n", {"warning"}),
     ],
 )
 def test_a_python_test_that_calls_what_is_gone(target, cmake, expected, tmp_path):
