@@ -115,13 +115,15 @@ def find_toplevel() -> Path:
 
 
 def find_python() -> str:
-    """The Python that has rospy. Raises UserError."""
+    """The Python that has rospy, and netifaces, which rospy imports when it connects and Debian's packages of it do not
+    bring. Raises UserError."""
     for python in ("/usr/bin/python3", shutil.which("python3") or "", sys.executable):
         if python and os.path.exists(python):
-            done = subprocess.run([python, "-c", "import rospy, rosgraph"], capture_output=True, check=False)
+            done = subprocess.run([python, "-c", "import rospy, rosgraph, netifaces"], capture_output=True, check=False)
             if not done.returncode:
                 return python
-    raise UserError("--verify: needs rospy and a master; on Debian: apt install python3-rospy python3-rosmaster")
+    needed = "python3-rospy python3-netifaces python3-rosmaster"
+    raise UserError(f"--verify: needs rospy and a master; on Debian: apt install {needed}")
 
 
 def build(root: Path, folder: Path, prepared: Prepared, toplevel: Path) -> str:
