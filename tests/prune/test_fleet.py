@@ -18,7 +18,8 @@ def has_ros1() -> bool:
     programs = all(map(shutil.which, ("cmake", "rosmaster", "g++")))
     if not headers or not programs or not Path("/usr/share/catkin/cmake/toplevel.cmake").exists():
         return False
-    return not subprocess.run(["/usr/bin/python3", "-c", "import rospy, netifaces, genpy, gencpp"], check=False).returncode
+    imports = "import rospy, netifaces, genpy, gencpp"
+    return not subprocess.run(["/usr/bin/python3", "-c", imports], check=False).returncode
 
 
 pytestmark = pytest.mark.skipif(not has_ros1(), reason="catkin, roscpp, rospy and a master are not all there")

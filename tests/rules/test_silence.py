@@ -1437,7 +1437,7 @@ def test_cmake_does_not_stop_for_what_a_program_that_it_runs_before_may_write(be
     assert [finding.severity for finding in report.findings if finding.rule == "missing-package-call"] == expected
 
 
-@pytest.mark.parametrize(("run", "expected"), [("git clone https://example.org/x.git FFmpeg", "warning"), ("", "error")])
+@pytest.mark.parametrize(("run", "expected"), [("git clone https://example.org/x FFmpeg", "warning"), ("", "error")])
 def test_a_program_that_cmake_runs_may_fetch_the_headers_of_a_folder_that_is_searched(run, expected, tmp_path):
     body = f"execute_process(COMMAND {run})\n" if run else ""
     body += "include_directories(FFmpeg)\nadd_executable(m m.cpp)\ninstall(TARGETS m DESTINATION lib/${PROJECT_NAME})"

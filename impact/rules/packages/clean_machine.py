@@ -171,7 +171,7 @@ def _collect_include_doubts(view: TargetView, package: Package, need: Need, name
 
 
 def _may_fetch_headers(package: Package) -> bool:
-    """Whether configuring runs programs, and a folder of the package is searched that is not there: they may bring it."""
+    """Whether configuring runs programs, which may bring a folder of the package that is searched and not there."""
     build = package.build
     inside = (posixpath.normpath(path) for path, _ in build.include_dirs if path and path[0] not in "/$~.<")
     return bool(build.starts) and any(path not in package.folders for path in inside)
