@@ -1127,8 +1127,10 @@ class Interpreter:
         if relative is None or not (self.is_in_package(relative) or relative == self.package_path):
             return None
         known = self.exists(relative)
-        if known is None or known or self.glob(f"{relative}/*" if relative else "*", True):
-            return known if known is None else True
+        if known is None:
+            return None
+        if known or self.glob(f"{relative}/*" if relative else "*", True):
+            return True
         return None if self.starts else False
 
     def set_match_groups(self, groups: tuple[str, ...]) -> None:
