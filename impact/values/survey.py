@@ -355,14 +355,7 @@ class Survey:
             # The top of a module has no name.
             name = one.site.name if one.kind == "main" else one.name
             code = CallbackCode(
-                module,
-                name,
-                line,
-                one.message_type,
-                one.joined,
-                one.place,
-                one.kind,
-                self.workspace.ros == 2,
+                module, name, line, one.message_type, one.joined, one.place, one.kind, self.workspace.ros == 2,
                 one.role,
             )
             yield _Target(_identify(one), answer, self._name_python_constants(one.message_type), code=code)
