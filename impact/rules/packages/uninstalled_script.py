@@ -25,8 +25,8 @@ from itertools import chain
 
 from ....edges.groups import group_pairs
 from ...model.package import find_folder_role
-from ..vocabulary import At, Diagnostic, Package, TargetView, Text, Together, rule
-from .install_rules import is_installed, list_references, read_installs
+from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, Together, rule
+from .install_rules import is_installed, list_install_doubts, list_references, read_installs
 
 _ONCE = (Together("not installed"),)
 _OF_CATKIN = "catkin_install_python(PROGRAMS ...)"
@@ -68,7 +68,8 @@ def uninstalled_script(view: TargetView, package: Package):
             kind = "script" if name in scripts else "beside" if beside else "node"
             of_catkin = package.build_type == "catkin" and path not in package.linked.shells
             data = {"command": _OF_CATKIN if of_catkin else "install(PROGRAMS ... DESTINATION lib/${PROJECT_NAME})"}
-            found[kind].append(Diagnostic(At(path, 1), name, package.name, data, kind, together=_ONCE))
+            doubts = (*(() if kind == "script" else (Doubt.UNCHECKED,)), *list_install_doubts(view, package))
+            found[kind].append(Diagnostic(At(path, 1), name, package.name, data, kind, doubts, together=_ONCE))
     yield from chain.from_iterable(found.values())  # the first of them is the warning
 
 
