@@ -26,7 +26,9 @@ Severity
     packages of ROS are (`finger_tricks`); error for those whose interfaces are included or imported. note: conditional
     code, examples (installed ones too, in what they import and start), documentation, files that nothing compiles, or
     is known to install, and all but the first of more than five imports (in ROS 1 and in tests, of several), or
-    packages that launch files start, which a package does not declare, and further packages that lack the same.
+    packages that launch files start, which a package does not declare, and further packages that lack the same; of
+    distros that have ended, whose machines were set up while they were maintained, all that only a launch file or
+    program lacks, if it is no error.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
