@@ -9,7 +9,7 @@ import posixpath
 import re
 
 from ...model.package import find_folder_role, is_called_example
-from ..vocabulary import Doubt, Need, Package, TargetView, list_ended_doubts
+from ..vocabulary import Doubt, Need, Package, TargetView
 from .data_files import list_copied
 from .dependants import list_compiled_elsewhere
 from .install_rules import LAUNCH_FILE, is_installed, list_references, may_stay_behind, read_installs
@@ -115,7 +115,7 @@ def _collect_run_time_doubts(view: TargetView, package: Package, need: Need, nam
     if not wanted or (need.how in _STARTED and not started):
         return (Doubt.DISPENSABLE,)
     if view.target.ros == 1 or not view.is_available(name) or not _is_reached(view, package, need):
-        return (Doubt.LATE, *list_ended_doubts(view))  # machines of such a distro were set up when it was maintained
+        return (Doubt.LATE,)
     # A fresh container has what all packages of the workspace bring, and whoever starts something its command.
     if view.is_met(need.providers, view.brought_to_workspace) or name in view.list_transitive(["ros2run"]):
         return (Doubt.LUCKY,)

@@ -9,8 +9,8 @@ Why it breaks
     The package builds, and dependants do not get what its messages and headers include, unless they find it themselves.
 
 Severity
-    warning; note for messages of packages that come along with roscpp, and for headers of packages that the distro
-    brings: all of them lie in one folder; note for messages where the distro has ended, so that it stays so.
+    warning; note for messages and headers of packages that the distro brings, since all of them lie in one folder, for
+    messages of packages that come along with roscpp, and for `message_runtime` where the distro has ended.
 
 Example
     generate_messages(DEPENDENCIES geometry_msgs)
@@ -79,7 +79,8 @@ def _list_of_messages(view: TargetView, package: Package):
         for name, at in made.dependencies:
             if "$" not in name and name not in reach and name in owners:
                 reach |= {name}
-                doubts = (not view.roles.comes_with_client_library(name) or Doubt.DISPENSABLE, *list_ended_doubts(view))
+                apart = name in view.workspace.packages and not view.roles.comes_with_client_library(name)
+                doubts = (apart or Doubt.DISPENSABLE,)
                 yield Diagnostic(at, name, package.name, kind="messages", doubts=doubts, together=_ONCE)
 
 
