@@ -86,6 +86,10 @@ def _list_of_catkin(view: TargetView, package: Package):
     found = names | {f.prefix for f in package.build.found}
     installs = (item for install in package.build.installs for item in install.items)
     made = {posixpath.basename(item) for item in (*installs, *package.build.made)}
+    # A package without libraries and messages gives nothing for which others would find it.
+    libraries = any(target.kind == "library" for target in package.build.targets)
+    messages = any(generated.how != "reconfigure" for generated in package.build.generated)
+    wanted = libraries or messages or package.name in view.workspace.includers
     for export in (export for export in package.build.exports if "$" not in export.item):
         item, target = export.item, targets.get(export.item)
         if export.how == "libraries" and target is not None:
@@ -98,7 +102,8 @@ def _list_of_catkin(view: TargetView, package: Package):
             if not outside and made.isdisjoint((f"lib{item}.so", f"lib{item}.a")):  # of which no target is known
                 own = asked and all(link.item != item for link in package.build.target_links)
                 own = own and not view.unknown_contents.may_hold(package, item)
-                doubts = ((own and view.is_sure(export.conditions)) or Doubt.AMBIGUOUS,)
+                sure = own and view.is_sure(export.conditions)
+                doubts = (sure or Doubt.AMBIGUOUS, asked or wanted or Doubt.DISPENSABLE)
                 yield Diagnostic(export.at, item, package.name, kind="no target", doubts=doubts)
         elif export.how == "system_depends" and item not in found and not any(sets_variables(f, item) for f in names):
             near = next((f for f in found if f and f.lower().rstrip("3") == item.lower().rstrip("3")), "")
