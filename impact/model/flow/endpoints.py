@@ -32,6 +32,7 @@ from .types import find_header_interface, find_interface, parse_flow_type
 from .values import (
     LOST,
     NOT_PASSED,
+    NOT_YET,
     WHICH_TURN,
     FlowValue,
     FlowValues,
@@ -42,7 +43,6 @@ from .values import (
 )
 
 _EMPTY = "the name is empty"
-_NOT_YET = frozenset(("", "None", "nullptr"))
 _CONNECTS = ("connectInput", "reset")
 _PUTS = frozenset(("push_back", "emplace_back", "emplace", "insert", "append", "make_pair", "reset"))
 _ROLES: dict[str, Role] = {role: role for role in get_args(Role)}
@@ -346,7 +346,7 @@ class Sites:
         found = join_opposites(values.evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line))
         # What is empty, or nothing, was not given yet.
         empty = (FlowValue(None, "unresolved", _EMPTY),)
-        return tuple(one for one in found if one.text not in _NOT_YET) or empty
+        return tuple(one for one in found if one.text not in NOT_YET) or empty
 
     @staticmethod
     def _join_spaces(spaces: list[FlowValue], names: tuple[FlowValue, ...]) -> tuple[FlowValue, ...]:

@@ -74,6 +74,8 @@ ASKING = frozenset(("if", "unless", "case"))
 _EACH = FlowExpr("other")
 _COUNTER = "enumerate"
 TOO_MANY = "too many steps"
+# What a text is that was not given yet.
+NOT_YET = frozenset(("", "None", "nullptr"))
 WHICH_TURN = "which turn of the loop it is"
 NOT_PASSED = "has no known value that passes the conditions around"
 _TOGETHER = "these parts of the name belong together"
@@ -411,12 +413,14 @@ class FlowValues:
     def _evaluate_fallback(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         """`a or b`: b is there where a may be empty, as a default where it is not known to be."""
         found = list(self._evaluate(value.parts[1], fn, line, seen))
-        yield from (one for one in found if one.text != "")
-        empty = [one for one in found if not one.text]
+        yield from (one for one in found if one.text not in NOT_YET)
+        empty = [one for one in found if not one.text or one.text in NOT_YET]
         if found and not empty:
             return
-        sure = all(one == _NOT_GIVEN or (one.text == "" and one.how != "default") for one in empty)
-        for one in self._evaluate(value.parts[2], fn, line, seen):
+        sure = all(one == _NOT_GIVEN or (one.text in NOT_YET and one.how != "default") for one in empty)
+        conditions = {one.only_if for one in empty}
+        condition = "" if "" in conditions else " or ".join(sorted(conditions))
+        for one in put_under_more(self._evaluate(value.parts[2], fn, line, seen), condition):
             yield one if sure or one.how not in ("literal", "given") else one._replace(how="default")
 
     def _evaluate_join(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
