@@ -566,11 +566,18 @@ class FlowCode:
         return {(source.path, cls.name) for source in self.sources for cls in source.facts.classes}
 
     def list_enclosing_chain(self, fn: Fn) -> Iterator[Fn]:
-        """The function, and for a lambda those around it."""
+        """The function, and for a lambda, or a function of Python, those around it whose variables it sees: for a
+        method, those that its class stands in."""
         seen = 0
         while fn is not None and seen < 10:
             yield fn
-            fn, seen = self.find_enclosing(fn), seen + 1  # type: ignore[assignment]
+            fn, seen = self.find_enclosing(fn) or self._find_around_class(fn), seen + 1  # type: ignore[assignment]
+
+    def _find_around_class(self, fn: Fn) -> Fn | None:
+        """The function of Python that the class of a method stands in."""
+        if fn.source.facts.language != "python" or "." not in fn.scope:
+            return None
+        return self.by_name.get((fn.source.path, get_outer(fn.scope)))
 
     # Variables
 

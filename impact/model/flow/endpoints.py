@@ -529,12 +529,14 @@ class Sites:
 
     def _resolve_in_namespaces(self, name: str, fn: Fn) -> str:
         """A type's interface by `using namespace sensor_msgs` and `using namespace std_msgs::msg`."""
-        if fn.source.facts.language != "cpp" or ("::" in name and not name.startswith("msg::")):
+        bare = name.removesuffix("::Request").removesuffix("::Response")
+        if fn.source.facts.language != "cpp" or ("::" in bare and not bare.startswith("msg::")):
             return ""
         found: list[str] = []
         for alias in self.code.aliases[fn.source.path].get("*", ()):
-            known = find_interface(f"{alias.target}::{name}")
-            if known and alias.target.endswith(("::msg", "::srv", "::action", "_msgs", "_srvs")):
+            known = find_interface(f"{alias.target}::{bare}", lower=True)
+            named = alias.target.endswith(("::msg", "::srv", "::action", "_msgs", "_srvs")) and bare[:1].isupper()
+            if known and (named or self.defined.has(known)):
                 found.append(known)
         if len(found) > 1:
             included = {find_header_interface(header) for header in fn.source.facts.includes}
