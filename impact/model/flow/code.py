@@ -76,7 +76,7 @@ class Fn:
         self.is_lambda = facts.name.startswith("lambda@", len(facts.name) - len(get_tail(facts.name)))
         self.assigned: dict[str, list[Assignment]] = {}
         # What is declared here hides members of the same name.
-        self.locals = {p.name for p in facts.parameters}
+        self.locals = {p.name.lstrip("*") for p in facts.parameters}
         python = source.facts.language == "python"
         for each in facts.assignments:
             target = each.target
