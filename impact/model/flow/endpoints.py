@@ -180,6 +180,27 @@ def _select_lost(names: Sequence[FlowValue]) -> list[FlowValue]:
     return [one for one in passed if not one.uncalled and not one.unpassed]
 
 
+def _list_held_paths(value: FlowExpr) -> Iterator[str]:
+    """The variables of which an expression is the value, an element, or a part of an element: `pub`, `pubs[i]`,
+    `pubs.items()`, and each of `(a, b)` that a loop walks through. A call that gives something else ends in `()`."""
+    keys: list[FlowExpr] = []
+    while value.kind == "index" and value.parts:
+        keys.append(value.parts[-1])
+        value = value.parts[0]
+    rows = [value]
+    for key in reversed(keys):
+        if any(row.kind != "list" for row in rows):
+            break
+        place = int(key.text) if key.kind == "number" and is_number(key.text) else None
+        rows = [each for row in rows for each in (row.parts if place is None else row.parts[place : place + 1])]
+    for row in rows:
+        if row.kind == "name" and row.text:
+            yield row.text
+        elif row.kind == "call" and row.text:
+            inner = get_tail(row.text) in ("at", "value", "get", "items", "values", "copy") and get_outer(row.text)
+            yield inner or f"{row.text}()"
+
+
 class Sites:
     """All sites of a body of code."""
 
@@ -993,22 +1014,38 @@ class Sites:
                     if part.kind == "name":
                         yield from self.list_publishers(part.text, writer, depth + 1)
         for writer, each in code.list_writes(variable):
-            if each.value.kind in ("name", "index", "call") and each.operator in ("=", "for"):
-                text = each.value.text
-                if each.value.kind == "index":
-                    text = unparse(each.value.parts[0]) if each.value.parts else ""
-                elif each.value.kind == "call":
-                    text = get_outer(text) if get_tail(text) in ("at", "value", "get") else f"{text}()"
-                if text and text != receiver:
-                    yield from self.list_publishers(text, writer, depth + 1)
+            if each.operator in ("=", "for"):
+                for text in _list_held_paths(each.value):
+                    if text != receiver:
+                        yield from self.list_publishers(text, writer, depth + 1)
+        for writer, value in self._list_put(variable):
+            yield from self.list_publishers(value.text, writer, depth + 1)
         if variable.kind == "local":
             for one in code.list_enclosing_chain(fn):
                 place = find_parameter(one, variable.name)
                 if place is None:
                     continue
-                for value, giver in code.list_given(one, place[0], variable.name):
-                    if value.kind == "name":
-                        yield from self.list_publishers(value.text, giver, depth + 1)
+                given = list(code.list_given(one, place[0], variable.name))
+                around = code.find_enclosing(one)
+                # `lambda message, to=publisher: to.publish(message)`
+                if place[1].default is not None and around is not None:
+                    given.append((place[1].default, around))
+                for value, giver in given:
+                    for text in _list_held_paths(value):
+                        yield from self.list_publishers(text, giver, depth + 1)
+
+    def _list_put(self, variable: Variable) -> list[tuple[Fn, FlowExpr]]:
+        """The variables that are put into a container, with the functions that do."""
+        return self._put_by_variable.get(variable, [])
+
+    @cached_property
+    def _put_by_variable(self) -> dict[Variable, list[tuple[Fn, FlowExpr]]]:
+        calls = self.code.list_calls_named(("append", "push_back", "emplace_back"))
+        return group_pairs(
+            (self.code.identify(get_outer(call.callee), fn), (fn, argument))
+            for fn, call in calls if "." in call.callee and "()" not in call.callee
+            for argument in call.arguments if argument.kind == "name"
+        )  # fmt: skip
 
     @cached_property
     def timers(self) -> list[TimerSite]:
