@@ -106,6 +106,24 @@ class Expressions(SourceText):
         """How much was noted of the function up to here."""
         return len(self.calls) + len(self.accesses) + len(self.assignments)
 
+    def note_bound_method(self, name: str, value: FlowExpr, operator: str) -> None:
+        """Notes what a variable of the function calls that is worth a method of an object and nothing else:
+        `declare = self.declare_parameter`."""
+        is_method = value.kind in ("name", "function") and operator == "=" and name not in self.locals
+        self.body.bound_methods[name] = value.text if is_method and "." in value.text else ""
+
+    def find_bound_method(self, name: str) -> str:
+        """What a variable of the function, or of one around it, calls as note_bound_method() has it; empty where that is
+        no method, or not one alone."""
+        body = self.body
+        while body is not None and name not in body.locals:
+            body = body.outer
+        method = body.bound_methods.get(name, "") if body is not None else ""
+        receiver = method.rpartition(".")[0]
+        if receiver and self.knows(receiver.partition(".")[0]):
+            self.touch(receiver, "pass")
+        return method
+
     def is_function(self, name: str) -> bool:
         body = self.body
         while body is not None:
@@ -465,6 +483,7 @@ class Expressions(SourceText):
                 path = "this." + name
             else:
                 path = name
+                self.note_bound_method(name, value, operator)
                 if not body.name:
                     self.constants.append(DataMember(name, type, line, value))
                     self.locals.add(name)
@@ -658,7 +677,7 @@ class Expressions(SourceText):
                     name = "this." + name
                 else:
                     reading = name in _READING
-            callee = name if name != self.this else "this"
+            callee = self.find_bound_method(name) or (name if name != self.this else "this")
         else:
             callee, _ = self.reach(func)
             called = self.called

@@ -210,7 +210,7 @@ class CommandLine:
                     yield call, place
 
     def _list_options(self, parser: str, fn: Fn) -> Iterator[tuple[tuple[str, ...], dict[str, object]]]:
-        """What `parser.add_argument()` is told, as far as it is literal."""
+        """What `parser.add_argument()` is told, as far as it is literal, or a constant."""
         wanted = self.code.identify(parser, fn)
         for call in fn.facts.calls:
             if get_tail(call.callee) not in ("add_argument", "add_option"):
@@ -220,8 +220,16 @@ class CommandLine:
             names = tuple(a.text for a in call.arguments if a.kind == "text")
             kept = ("dest", "default", "nargs", "action")
             keywords = (a for a in call.arguments if a.kind == "keyword" and a.parts and a.text in kept)
-            values = {keyword.text: _evaluate_literal(keyword.parts[0]) for keyword in keywords}
+            values = {keyword.text: _evaluate_literal(self._find_constant(keyword.parts[0], fn)) for keyword in keywords}
             yield names, {key: value for key, value in values.items() if value is not None}
+
+    def _find_constant(self, value: FlowExpr, fn: Fn) -> FlowExpr:
+        """The value of a constant, where an expression is one that is written once; else the expression."""
+        if value.kind != "name":
+            return value
+        written = self.code.list_writes(self.code.identify(value.text, fn))
+        only = written[0][1] if len(written) == 1 else None
+        return only.value if only is not None and only.guard < 0 and only.operator == "=" else value
 
 
 def list_guards(fn: Fn, guard: int) -> Iterator[Guard]:

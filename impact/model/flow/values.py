@@ -16,7 +16,7 @@ from msgspec import structs
 from ....edges.groups import group_pairs
 from ...facts.flow import Assignment, FlowCall, FlowExpr, FlowParameter, Guard
 from ...facts.python.flow_expressions import LONGEST_OTHER, make_join
-from ...facts.python.text import format_pieces
+from ...facts.python.text import format_pieces, split_percent_format
 from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number, select_overloads
@@ -29,6 +29,7 @@ from .makers import Makers
 from .named_in_turns import DefaultGiven, NamesInTurns
 from .names import is_open, make_open_part, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
+from .printing import find_format_place
 from .reaching import LOOPS, FlowValue, ReachingValues
 from .types import Cls, split_name
 
@@ -74,6 +75,8 @@ ASKING = frozenset(("if", "unless", "case"))
 _EACH = FlowExpr("other")
 _COUNTER = "enumerate"
 TOO_MANY = "too many steps"
+# What a text is that was not given yet.
+NOT_YET = frozenset(("", "None", "nullptr"))
 WHICH_TURN = "which turn of the loop it is"
 NOT_PASSED = "has no known value that passes the conditions around"
 _TOGETHER = "these parts of the name belong together"
@@ -413,12 +416,14 @@ class FlowValues:
     def _evaluate_fallback(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         """`a or b`: b is there where a may be empty, as a default where it is not known to be."""
         found = list(self._evaluate(value.parts[1], fn, line, seen))
-        yield from (one for one in found if one.text != "")
-        empty = [one for one in found if not one.text]
+        yield from (one for one in found if one.text not in NOT_YET)
+        empty = [one for one in found if not one.text or one.text in NOT_YET]
         if found and not empty:
             return
-        sure = all(one == _NOT_GIVEN or (one.text == "" and one.how != "default") for one in empty)
-        for one in self._evaluate(value.parts[2], fn, line, seen):
+        sure = all(one == _NOT_GIVEN or (one.text in NOT_YET and one.how != "default") for one in empty)
+        conditions = {one.only_if for one in empty}
+        condition = "" if "" in conditions else " or ".join(sorted(conditions))
+        for one in put_under_more(self._evaluate(value.parts[2], fn, line, seen), condition):
             yield one if sure or one.how not in ("literal", "given") else one._replace(how="default")
 
     def _evaluate_join(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
@@ -1543,12 +1548,21 @@ class FlowValues:
                 yield joined if joined.text is None else joined._replace(text=posixpath.join(*texts))
             return
         if method == "join":
-            listed = arguments[0] if len(arguments) == 1 and arguments[0].kind == "list" else None
-            if listed is None or value.receiver is None:
+            if len(arguments) != 1 or value.receiver is None:
                 yield unknown
-                return
-            between = [part for each in listed.parts for part in (value.receiver, each)][1:]
-            yield from self._evaluate_join(FlowExpr("join", "", tuple(between)), fn, line, seen)
+            elif arguments[0].kind == "list":
+                between = [part for each in arguments[0].parts for part in (value.receiver, each)][1:]
+                yield from self._evaluate_join(FlowExpr("join", "", tuple(between)), fn, line, seen)
+            else:
+                listed = self.elements.list_in_order(arguments[0], fn, line)
+                if not listed or any(one.only_if for one in listed):
+                    yield unknown
+                    return
+                held = [_take_first(self._evaluate_listed(one, (*seen, ("element", one.value)))) for one in listed]
+                for row in islice(product(*held), _MOST):
+                    joined = _join(row)
+                    texts = [one.text or "" for one in row]
+                    yield joined if joined.text is None else joined._replace(text=value.receiver.text.join(texts))
             return
         called = _find_read_call(head, value) if head else value.receiver
         if called is not None:
@@ -1614,6 +1628,11 @@ class FlowValues:
         only = near[0] if near and arguments is not None else None
         targets = self._select_overridden(callee, fn)
         for target in targets if only is None else select_overloads(targets, only, fn):
+            form = find_format_place(target) if arguments is not None else None
+            if form is not None and arguments is not None:
+                returned = True
+                yield from self._evaluate_printed(callee, arguments[form:], fn, line, seen)
+                continue
             if self._is_in(("returns", target), seen):
                 continue
             inner = (*seen, ("returns", target))
@@ -1627,6 +1646,21 @@ class FlowValues:
             self._left = values._left
         if not returned:
             yield FlowValue(None, "unresolved", f"what `{callee}` gives is not known")
+
+    def _evaluate_printed(
+        self, callee: str, arguments: tuple[FlowExpr, ...], fn: Fn, line: int, seen: tuple
+    ) -> Iterator[FlowValue]:  # fmt: skip
+        """What printf makes of a format and what follows it."""
+        for one in self._evaluate(arguments[0], fn, line, seen) if arguments else ():
+            pieces = split_percent_format(one.text) if one.text is not None else None
+            joined = make_join(pieces, arguments[1:])
+            if one.text is not None and joined is None:
+                yield FlowValue(None, "unresolved", f"what `{callee}` makes of it is not followed")
+            elif joined is None:
+                yield one
+            else:
+                for each in self._evaluate_join(joined, fn, line, seen):
+                    yield each if each.text is None else _join((one, each))._replace(text=each.text)
 
     def _evaluate_returned(self, each: Assignment, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
         """What a function returns at one place, nothing where it does not come there."""
