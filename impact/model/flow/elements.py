@@ -87,6 +87,22 @@ class Elements:
         held = self._find_held(container, fn, line)
         return list(held[0].elements) if held and len(held) == 1 and held[0].whole else None
 
+    def list_in_order(self, container: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
+        """The elements of a list in the order in which they are written; None where that is not known."""
+        return self.list_turns(container, fn, line) if self._is_in_order(container, fn) else None
+
+    def _is_in_order(self, value: FlowExpr, fn: Fn, depth: int = 0) -> bool:
+        """Whether a list is written as such, or as several one after the other: nothing sorts it."""
+        if value.kind == "join" and value.text == "+":
+            return all(self._is_in_order(part, fn, depth) for part in value.parts)
+        if value.kind != "name" or depth > _DEEPEST:
+            return value.kind == "list"
+        variable = self.code.identify(value.text, fn)
+        if variable.kind == "local" and find_parameter(fn, f"*{variable.name}") is not None:
+            return True
+        written = self.code.list_writes(variable)
+        return bool(written) and all(self._is_in_order(each.value, writer, depth + 1) for writer, each in written)
+
     def _take_turn(self, held: list[HeldList], fn: Fn, line: int) -> list[ListElement]:
         """Of the elements of lists those that the loop which begins on a line goes through: that of its turn alone,
         where one is chosen."""
@@ -291,6 +307,9 @@ class Elements:
             if inner is None:
                 return None
             found += inner
+        starred = self._list_starred(variable, fn) if not found else None
+        if starred is not None:
+            found.append(starred)
         for one in self._list_given(variable, fn) if not found else ():
             inner = self._list_held(one.value, one.fn, one.line, depth + 1)
             if inner is None:
@@ -331,6 +350,20 @@ class Elements:
             for constant, source in self.code.list_constants(variable, fn):
                 if constant.value is not None:
                     yield ListElement(constant.value, self.code.find_first(source, fn), constant.line)
+
+    def _list_starred(self, variable: Variable, fn: Fn) -> HeldList | None:
+        """What the only call of a function of Python gives for `*names`; None for all else."""
+        place = find_parameter(fn, f"*{variable.name}") if variable.kind == "local" else None
+        only = self._find_only(fn)
+        called = [(giver, call) for giver, call in self.code.callers.get(fn, ()) if only is None or call is only]
+        called = [(giver, call) for giver, call in called if self._runs(giver)]
+        if place is None or len(called) != 1:
+            return None
+        giver, call = called[0]
+        if any(one.kind == "keyword" and one.text in ("*", "**") for one in call.arguments):
+            return None
+        positional = [one for one in call.arguments if one.kind != "keyword"]
+        return HeldList(tuple(ListElement(one, giver, call.line) for one in positional[place[0] :]))
 
     def _list_given(self, variable: Variable, fn: Fn) -> Iterator[ListElement]:
         """What callers that run give for a parameter of a function, and its default where one of them gives nothing."""

@@ -16,7 +16,7 @@ from msgspec import structs
 from ....edges.groups import group_pairs
 from ...facts.flow import Assignment, FlowCall, FlowExpr, FlowParameter, Guard
 from ...facts.python.flow_expressions import LONGEST_OTHER, make_join
-from ...facts.python.text import format_pieces
+from ...facts.python.text import format_pieces, split_percent_format
 from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number, select_overloads
@@ -29,6 +29,7 @@ from .makers import Makers
 from .named_in_turns import DefaultGiven, NamesInTurns
 from .names import is_open, make_open_part, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
+from .printing import find_format_place
 from .reaching import LOOPS, FlowValue, ReachingValues
 from .types import Cls, split_name
 
@@ -74,6 +75,8 @@ ASKING = frozenset(("if", "unless", "case"))
 _EACH = FlowExpr("other")
 _COUNTER = "enumerate"
 TOO_MANY = "too many steps"
+# What a text is that was not given yet.
+NOT_YET = frozenset(("", "None", "nullptr"))
 WHICH_TURN = "which turn of the loop it is"
 NOT_PASSED = "has no known value that passes the conditions around"
 _TOGETHER = "these parts of the name belong together"
@@ -377,6 +380,8 @@ class FlowValues:
             yield FlowValue(value.text)
         elif kind == SETTING:
             yield FlowValue(value.text, "launch")
+        elif kind == "name" and (called := _find_read_call(value.text, value)) is not None:
+            yield from self._evaluate(called, fn, line, seen)
         elif kind == "name":
             yield from self._evaluate_name(value.text, fn, line, seen)
         elif kind == "join":
@@ -411,12 +416,14 @@ class FlowValues:
     def _evaluate_fallback(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         """`a or b`: b is there where a may be empty, as a default where it is not known to be."""
         found = list(self._evaluate(value.parts[1], fn, line, seen))
-        yield from (one for one in found if one.text != "")
-        empty = [one for one in found if not one.text]
+        yield from (one for one in found if one.text not in NOT_YET)
+        empty = [one for one in found if not one.text or one.text in NOT_YET]
         if found and not empty:
             return
-        sure = all(one == _NOT_GIVEN or (one.text == "" and one.how != "default") for one in empty)
-        for one in self._evaluate(value.parts[2], fn, line, seen):
+        sure = all(one == _NOT_GIVEN or (one.text in NOT_YET and one.how != "default") for one in empty)
+        conditions = {one.only_if for one in empty}
+        condition = "" if "" in conditions else " or ".join(sorted(conditions))
+        for one in put_under_more(self._evaluate(value.parts[2], fn, line, seen), condition):
             yield one if sure or one.how not in ("literal", "given") else one._replace(how="default")
 
     def _evaluate_join(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
@@ -1452,15 +1459,17 @@ class FlowValues:
         if python and last in _STRING_METHODS and (head or value.receiver is not None):
             yield from self._evaluate_string_method(value, fn, line, seen)
             return
-        if head and (last in _SAME or (last == "get" and value.receiver is not None and not value.parts)):
-            if value.receiver is not None and (value.receiver.kind == "call" or head == "()"):
-                yield from self._evaluate(value.receiver, fn, line, seen)
+        got = last == "get" and not python and value.receiver is not None and not value.parts
+        if head and (last in _SAME or got):
+            called = value.receiver if not python else _find_read_call(head, value)
+            if called is not None and (called.kind == "call" or head == "()"):
+                yield from self._evaluate(called, fn, line, seen)
             elif head.endswith("()"):
                 yield from self._evaluate_inner(head.removesuffix("()"), fn, line, seen)
             else:
                 yield from self._evaluate_name(head, fn, line, seen)
             return
-        if head and last in ("get", "at") and value.parts and value.receiver is None:
+        if head and last in ("get", "at") and value.parts and (python or value.receiver is None):
             chosen = self.elements.select(FlowExpr("name", head), value.parts[0], fn, line)
             if chosen:
                 for one in chosen:
@@ -1539,15 +1548,25 @@ class FlowValues:
                 yield joined if joined.text is None else joined._replace(text=posixpath.join(*texts))
             return
         if method == "join":
-            listed = arguments[0] if len(arguments) == 1 and arguments[0].kind == "list" else None
-            if listed is None or value.receiver is None:
+            if len(arguments) != 1 or value.receiver is None:
                 yield unknown
-                return
-            between = [part for each in listed.parts for part in (value.receiver, each)][1:]
-            yield from self._evaluate_join(FlowExpr("join", "", tuple(between)), fn, line, seen)
+            elif arguments[0].kind == "list":
+                between = [part for each in arguments[0].parts for part in (value.receiver, each)][1:]
+                yield from self._evaluate_join(FlowExpr("join", "", tuple(between)), fn, line, seen)
+            else:
+                listed = self.elements.list_in_order(arguments[0], fn, line)
+                if not listed or any(one.only_if for one in listed):
+                    yield unknown
+                    return
+                held = [_take_first(self._evaluate_listed(one, (*seen, ("element", one.value)))) for one in listed]
+                for row in islice(product(*held), _MOST):
+                    joined = _join(row)
+                    texts = [one.text or "" for one in row]
+                    yield joined if joined.text is None else joined._replace(text=value.receiver.text.join(texts))
             return
-        if value.receiver is not None:
-            held = list(self._evaluate(value.receiver, fn, line, seen))
+        called = _find_read_call(head, value) if head else value.receiver
+        if called is not None:
+            held = list(self._evaluate(called, fn, line, seen))
         elif head.endswith("()"):
             held = list(self._evaluate_inner(head.removesuffix("()"), fn, line, seen))
         else:
@@ -1609,6 +1628,11 @@ class FlowValues:
         only = near[0] if near and arguments is not None else None
         targets = self._select_overridden(callee, fn)
         for target in targets if only is None else select_overloads(targets, only, fn):
+            form = find_format_place(target) if arguments is not None else None
+            if form is not None and arguments is not None:
+                returned = True
+                yield from self._evaluate_printed(callee, arguments[form:], fn, line, seen)
+                continue
             if self._is_in(("returns", target), seen):
                 continue
             inner = (*seen, ("returns", target))
@@ -1622,6 +1646,21 @@ class FlowValues:
             self._left = values._left
         if not returned:
             yield FlowValue(None, "unresolved", f"what `{callee}` gives is not known")
+
+    def _evaluate_printed(
+        self, callee: str, arguments: tuple[FlowExpr, ...], fn: Fn, line: int, seen: tuple
+    ) -> Iterator[FlowValue]:  # fmt: skip
+        """What printf makes of a format and what follows it."""
+        for one in self._evaluate(arguments[0], fn, line, seen) if arguments else ():
+            pieces = split_percent_format(one.text) if one.text is not None else None
+            joined = make_join(pieces, arguments[1:])
+            if one.text is not None and joined is None:
+                yield FlowValue(None, "unresolved", f"what `{callee}` makes of it is not followed")
+            elif joined is None:
+                yield one
+            else:
+                for each in self._evaluate_join(joined, fn, line, seen):
+                    yield each if each.text is None else _join((one, each))._replace(text=each.text)
 
     def _evaluate_returned(self, each: Assignment, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
         """What a function returns at one place, nothing where it does not come there."""
@@ -1892,6 +1931,14 @@ def _mark_unknown(values: Iterable[FlowValue]) -> list[FlowValue]:
 def _get_key(value: FlowExpr) -> FlowExpr:
     """Of a pair, as a dictionary has it for each key, the key; all else as it is."""
     return value.parts[0] if value.kind == "list" and len(value.parts) == 2 else value
+
+
+def _find_read_call(path: str, value: FlowExpr) -> FlowExpr | None:
+    """The call whose result a path is, or what is kept in it; None where it is something else. value: an expression of
+    Python that begins with the path."""
+    while value.receiver is not None and get_tail(path) in _SAME:
+        path = path.rpartition(".")[0]
+    return value.receiver if path.endswith("()") else None
 
 
 def _mentions(value: FlowExpr, path: str) -> bool:
