@@ -1573,7 +1573,9 @@ class FlowValues:
                 if not listed or any(one.only_if for one in listed):
                     yield unknown
                     return
-                held = [_take_first(self._evaluate_listed(one, (*seen, ("element", one.value)))) for one in listed]
+                held = [
+                    _take_first(iter(self._evaluate_listed(one, (*seen, ("element", one.value))))) for one in listed
+                ]
                 for row in islice(product(*held), _MOST):
                     joined = _join(row)
                     texts = [one.text or "" for one in row]

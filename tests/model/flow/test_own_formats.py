@@ -3,7 +3,6 @@
 import pytest
 from joining import graph
 
-
 PACK = """
     template <typename... Args>
     std::string format(const std::string& fmt, Args... args) {
@@ -100,7 +99,7 @@ main()
     [
         ('name_topic("a", "b")', {"/space/a/b"}),
         ("name_topic()", {"/space"}),
-        ('name_topic(*find())', set()),
+        ("name_topic(*find())", set()),
         ('sort_topic("b", "a")', set()),
         ('"/".join(LEADING)', {"/space"}),
         ('"/".join(LEADING + ["a"])', {"/space/a"}),
