@@ -113,7 +113,7 @@ class Expressions(SourceText):
         self.body.bound_methods[name] = value.text if is_method and "." in value.text else ""
 
     def find_bound_method(self, name: str) -> str:
-        """What a variable of the function, or of one around it, calls as note_bound_method() has it; empty where that is
+        """What a variable of the function, or of one around it, calls, as note_bound_method() has it; empty where it is
         no method, or not one alone."""
         body = self.body
         while body is not None and name not in body.locals:

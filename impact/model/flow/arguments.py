@@ -220,7 +220,9 @@ class CommandLine:
             names = tuple(a.text for a in call.arguments if a.kind == "text")
             kept = ("dest", "default", "nargs", "action")
             keywords = (a for a in call.arguments if a.kind == "keyword" and a.parts and a.text in kept)
-            values = {keyword.text: _evaluate_literal(self._find_constant(keyword.parts[0], fn)) for keyword in keywords}
+            values = {
+                keyword.text: _evaluate_literal(self._find_constant(keyword.parts[0], fn)) for keyword in keywords
+            }
             yield names, {key: value for key, value in values.items() if value is not None}
 
     def _find_constant(self, value: FlowExpr, fn: Fn) -> FlowExpr:

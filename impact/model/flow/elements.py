@@ -13,7 +13,8 @@ from .reaching import LOOPS
 from .variable_tests import read_variable_test
 
 SETTING = "setting"
-"""The kind of an expression that stands for the value of a parameter as a launch gives it."""
+"""The kind of an expression that stands for the value of a parameter as a launch gives it. Where it is known otherwise,
+its only part says how."""
 _DEEPEST = 8
 _MOST = 200
 # Expressions looked at for one list.
@@ -39,7 +40,7 @@ _LONGEST = 118
 # Ends the path of an element at a place that is a variable.
 _ANY = ".[]"
 _BEGIN = re.compile(r"(.+)\.c?begin")
-_COUNTS = re.compile(r"(\w+) (<=?) (\d{1,4})")
+_COUNTS = re.compile(r"(\w+) (<=?) (\d{1,4}|(?:this->)?[A-Za-z_]\w*)")
 
 
 class ListElement(NamedTuple):
@@ -50,6 +51,13 @@ class ListElement(NamedTuple):
     fn: Fn
     line: int
     only_if: str = ""
+
+
+class KnownCount(NamedTuple):
+    """A number that an expression is, and how it is known."""
+
+    number: int
+    how: str
 
 
 class HeldList(NamedTuple):
@@ -63,7 +71,7 @@ class Elements:
     """The elements of the lists and dictionaries of a body of code. runs: which functions run; find_only: the only
     call through which a function is reached, and find_makers: who in particular gives a constructor its arguments, None
     for any. given: what a launch makes of an expression; find_turn: the only turn of the loop that begins on a line,
-    None for any."""
+    None for any; count: the only number that an expression may be, None where that is not known."""
 
     def __init__(
         self, code: FlowCode, runs: Callable[[Fn], bool] = lambda fn: True,
@@ -71,9 +79,10 @@ class Elements:
         find_makers: Callable[[Fn], Sequence[Made] | None] = lambda fn: None,
         given: Callable[[FlowExpr, Fn, int], list[ListElement] | None] = lambda value, fn, line: None,
         find_turn: Callable[[Fn, int], int | None] = lambda fn, line: None,
+        count: Callable[[FlowExpr, Fn, int], KnownCount | None] = lambda value, fn, line: None,
     ):  # fmt: skip
         self.code, self._runs, self._find_only, self._find_makers = code, runs, find_only, find_makers
-        self._find_given, self._find_turn = given, find_turn
+        self._find_given, self._find_turn, self._count = given, find_turn, count
         self._left = 0
 
     def list_walked(self, container: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
@@ -137,9 +146,29 @@ class Elements:
                 same = [one for one in fn.assigned[path] if one.guard == place]
                 steps = [one.value.text for one in same if one.operator == "+="]
                 if guard.kind == "while" and guard.line == each.line and limit and limit[1] == path and steps == ["1"]:
-                    last = int(limit[3]) + (limit[2] == "<=")
-                    return _list_numbers(range(int(each.value.text), last), fn, line) if len(same) == 1 else []
+                    written = FlowExpr("number" if limit[3].isdecimal() else "name", limit[3].replace("->", "."))
+                    most = self._find_count(written, fn, each.line)
+                    if len(same) != 1 or most is None:
+                        return []
+                    last = most.number + (limit[2] == "<=")
+                    return _list_numbers(range(int(each.value.text), last), fn, line, most.how)
         return []
+
+    def _find_count(self, value: FlowExpr, fn: Fn, line: int) -> KnownCount | None:
+        """The number that a limit of a loop is."""
+        if value.kind == "number":
+            return KnownCount(int(value.text), "literal") if is_number(value.text) else None
+        return self._count(value, fn, line)
+
+    def _make_range(self, value: FlowExpr, fn: Fn, line: int) -> list[HeldList] | None:
+        """The numbers that `range` counts, where its limits are known."""
+        limits = [self._find_count(part, fn, line) for part in value.parts]
+        known = [one for one in limits if one is not None]
+        if not 0 < len(limits) < 3 or len(known) < len(limits):
+            return None
+        how = next((one.how for one in known if one.how != "literal"), "literal")
+        found = _list_numbers(range(*(one.number for one in known)), fn, line, how)
+        return [HeldList(tuple(found))] if found else None
 
     def find_pair(self, path: str, fn: Fn, line: int) -> list[ListElement] | None:
         """What `entry.first` and `entry.second` are, where a loop walks through pairs. None for all else."""
@@ -249,7 +278,7 @@ class Elements:
             held = self._list_held(value.receiver or called or FlowExpr("name", head), fn, line, depth + 1)
             return _select_column(held, _OF_DICTIONARIES[last]) if held and last in _OF_DICTIONARIES else held
         if python and not head and value.text == "range":
-            return _make_range(value, fn, line)
+            return self._make_range(value, fn, line)
         if python and not head and value.text in _COPIES and len(value.parts) == 1:
             return self._list_held(value.parts[0], fn, line, depth + 1)
         targets = self.code.list_targets(value.text, fn)
@@ -468,14 +497,8 @@ def _select_one(held: HeldList, key: FlowExpr) -> ListElement | None:
     return None
 
 
-def _make_range(value: FlowExpr, fn: Fn, line: int) -> list[HeldList] | None:
-    """The numbers that `range` counts, where its limits are written."""
-    if not 0 < len(value.parts) < 3 or any(part.kind != "number" or not is_number(part.text) for part in value.parts):
-        return None
-    found = _list_numbers(range(*(int(part.text) for part in value.parts)), fn, line)
-    return [HeldList(tuple(found))] if found else None
-
-
-def _list_numbers(numbers: range, fn: Fn, line: int) -> list[ListElement]:
-    """Numbers as they would be written; none where they are many."""
-    return [ListElement(FlowExpr("number", str(each)), fn, line) for each in numbers if len(numbers) <= _MOST]
+def _list_numbers(numbers: range, fn: Fn, line: int, how: str) -> list[ListElement]:
+    """Numbers as they would be written; none where they are many. how: it is known how far they count."""
+    told = () if how == "launch" else (FlowExpr("text", how),)
+    made = (FlowExpr("number", str(n)) if how == "literal" else FlowExpr(SETTING, str(n), told) for n in numbers)
+    return [ListElement(one, fn, line) for one in made] if len(numbers) <= _MOST else []

@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from functools import cached_property
 from itertools import islice, product
 from operator import itemgetter
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar, cast
 
 from msgspec import structs
 
@@ -21,7 +21,7 @@ from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number, select_overloads
 from .conditions import ConditionReader, DecidedCondition, is_truth
-from .elements import SETTING, Elements, ListElement, find_begun
+from .elements import SETTING, Elements, KnownCount, ListElement, find_begun
 from .given_lists import GivenLists
 from .graph import How
 from .literals import spell_number
@@ -248,6 +248,8 @@ class FlowValues:
         self._prefixes: dict[int, str] = {}
         self._asked_prefixes: set[int] = set()
         self._left = _MOST_STEPS
+        # Limits of loops that are asked for.
+        self._counted: set[tuple[Fn, FlowExpr]] = set()
         # How much more is being evaluated than was come to step by step: what stands for objects that make others.
         self._outer = 0
         self._budget = [_STEPS_IN_ALL + _STEPS_A_FUNCTION * len(self.code.functions)]
@@ -379,7 +381,7 @@ class FlowValues:
         elif kind == "text":
             yield FlowValue(value.text)
         elif kind == SETTING:
-            yield FlowValue(value.text, "launch")
+            yield FlowValue(value.text, cast(How, value.parts[0].text) if value.parts else "launch")
         elif kind == "name" and (called := _find_read_call(value.text, value)) is not None:
             yield from self._evaluate(called, fn, line, seen)
         elif kind == "name":
@@ -573,7 +575,24 @@ class FlowValues:
     def elements(self) -> Elements:
         """What lists and dictionaries of the code hold."""
         asked = (self.runs, self.find_only_call, self.find_makers, GivenLists(self).find, self.find_turn)
-        return Elements(self.code, *asked)
+        return Elements(self.code, *asked, self._count)
+
+    def _count(self, value: FlowExpr, fn: Fn, line: int) -> KnownCount | None:
+        """The only number that a limit of a loop may be."""
+        mark = fn, value
+        if mark in self._counted:
+            return None
+        self._counted.add(mark)
+        left = self._left
+        try:
+            found = self.evaluate(value, fn, line)
+        finally:
+            self._counted.discard(mark)
+            self._left = left
+        one = found[0]
+        if len(found) > 1 or one.text is None or not is_number(one.text) or one.only_if or one.how not in _LEAST:
+            return None
+        return KnownCount(int(one.text), one.how)
 
     def _evaluate_chosen(
         self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
@@ -1558,7 +1577,9 @@ class FlowValues:
                 if not listed or any(one.only_if for one in listed):
                     yield unknown
                     return
-                held = [_take_first(self._evaluate_listed(one, (*seen, ("element", one.value)))) for one in listed]
+                held = [
+                    _take_first(iter(self._evaluate_listed(one, (*seen, ("element", one.value))))) for one in listed
+                ]
                 for row in islice(product(*held), _MOST):
                     joined = _join(row)
                     texts = [one.text or "" for one in row]

@@ -32,8 +32,8 @@ main()
 """
 CASES = [
     ("make = self.create_publisher\nmake(Bool, '/a', 1)", {("/a", "literal")}),
-    ("declare = self.declare_parameter\ndeclare('p', '/b')\nself.create_publisher(Bool, self.get_parameter('p').value, 1)",
-     {("/b", "default")}),
+    ("declare = self.declare_parameter\ndeclare('p', '/b')\n"
+     "self.create_publisher(Bool, self.get_parameter('p').value, 1)", {("/b", "default")}),
     ("make = self.create_publisher\ndef inner(name):\n    make(Bool, name, 1)\ninner('/c')", {("/c", "literal")}),
     ("make = self.create_publisher\nshort = lambda name: make(Bool, name, 1)\nshort('/d')", {("/d", "literal")}),
     ("declare_all(self)\nread = self.get_parameter\nself.create_publisher(Bool, read('far').value, 1)",

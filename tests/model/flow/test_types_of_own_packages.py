@@ -2,7 +2,6 @@
 
 import pytest
 from joining import ends, graph
-
 from rosimpact.impact.model.flow.defined import DefinedInterfaces
 
 OWN = DefinedInterfaces({"DOCK": {"order", "State"}, "pier": {"Load", "Crane"}}, 1)
