@@ -13,7 +13,7 @@ Severity
     error for a library of its own that catkin_package() exports and no command makes, for a library that is exported
     and not installed, and for targets among dependencies where another package of the workspace finds this one;
     warning for other such targets, where dependants are not linked to a library, for a package that nobody has, or a
-    misspelt name in DEPENDS; note for other names in DEPENDS, and for a library of a package that makes none at all.
+    misspelt name in DEPENDS; note for other names in DEPENDS, and for the own name of a package that makes no library.
 
 Example
     ament_export_libraries(arm_control)         # and no add_library(arm_control ...)
@@ -139,8 +139,9 @@ def _list_of_ament(view: TargetView, package: Package, exports) -> Iterator[Diag
         if target is not None and target.kind == "library" and item not in installed and not target.alias_of:
             yield Diagnostic(export.at, item, package.name, kind="not installed")
         elif item not in names and (not view.find_cmake(item) or item == package.name):
-            # Of a package that makes no library at all, nobody wants to link one.
-            linked = package.name in view.workspace.includers or any(t.kind == "library" for t in targets.values())
+            # Some export their own name by habit: of a package that makes no library at all, nobody wants to link one.
+            linked = item != package.name or package.name in view.workspace.includers
+            linked = linked or any(t.kind == "library" for t in targets.values())
             doubts = (Doubt.DISTURBS, linked or Doubt.DISPENSABLE)
             yield Diagnostic(export.at, item, package.name, kind="not built", doubts=doubts)
 
