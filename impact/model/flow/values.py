@@ -23,7 +23,7 @@ from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, i
 from .conditions import ConditionReader, DecidedCondition, is_truth
 from .elements import SETTING, Elements, KnownCount, ListElement, find_begun
 from .given_lists import GivenLists
-from .graph import How
+from .graph import NOT_GIVEN, How
 from .literals import spell_number
 from .makers import Makers
 from .named_in_turns import DefaultGiven, NamesInTurns
@@ -1826,7 +1826,7 @@ class FlowValues:
                 None, "unresolved", f"{NO_DEFAULT}`{name}` is declared without a value: it is given at start"
             )
         elif not yielded:
-            reason = f"{NO_DEFAULT}`{name}` has no default here" if name else "which parameter it is, is not known"
+            reason = f"{NO_DEFAULT}`{name}` {NOT_GIVEN}" if name else "which parameter it is, is not known"
             yield FlowValue(None, "given", reason)
 
     def _is_typed_alone(self, one: DefaultGiven) -> bool:
