@@ -67,6 +67,8 @@ class Expressions(SourceText):
         self.class_bodies: dict[str, ClassBody] = {}
         # Names that a class's own body knows without its object.
         self.own: set[str] = set()
+        # The call on whose result what was read last is asked.
+        self.called: FlowExpr | None = None
         self.constants: list[DataMember] = []
         # Functions whose bodies are still to be read, since they see all variables of the one they stand in.
         self.waiting: list[tuple[Body, list[ast.stmt]]] = []
@@ -200,7 +202,7 @@ class Expressions(SourceText):
 
     def reach(self, node) -> tuple[str, bool]:
         """The path that an expression names and whether it begins at a variable of the function; what stands inside it,
-        such as an index or a call, is visited."""
+        such as an index or a call, is visited. `called` is then the call that the path begins with, None for none."""
         parts: list[str] = []
         while True:
             cls = node.__class__
@@ -227,10 +229,14 @@ class Expressions(SourceText):
             elif head in self.own:
                 head = "this." + head
         elif cls is ast.Call:
-            head = self.call(node)[0] + "()"
+            callee, given = self.call(node)
+            head = callee + "()"
+            self.called = FlowExpr("call", callee, given, self.called)
+            return ".".join((head, *reversed(parts))), False
         else:
             self.visit(node)
             head = "()"
+        self.called = None
         if not parts:
             return head, local
         parts.append(head)
@@ -262,7 +268,8 @@ class Expressions(SourceText):
             if head == "this":
                 return self.make_member(path, name)
             known = self.class_bodies.get(head)
-            return FlowExpr("function" if known is not None and name in known.callbacks else "name", path)
+            kind = "function" if known is not None and name in known.callbacks else "name"
+            return FlowExpr(kind, path, (), self.called)
         if cls is ast.Call:
             return self.walk_call(node, target)
         maker = _VALUES.get(cls)
@@ -643,16 +650,20 @@ class Expressions(SourceText):
         literal = func.value if func.__class__ is ast.Attribute else None  # type: ignore[attr-defined]
         # `"/".join(names)`
         told = literal.__class__ is ast.Constant and literal.value.__class__ is str  # type: ignore[union-attr]
-        return FlowExpr("call", callee, arguments, self.make_constant(literal) if told else None)  # type: ignore[arg-type]
+        receiver = self.make_constant(literal) if told else self.called  # type: ignore[arg-type]
+        return FlowExpr("call", callee, arguments, receiver)
 
     def call(self, node: ast.Call, target: str = "") -> tuple[str, tuple[FlowExpr, ...]]:
-        """Records a call, with what it is given and what it is called on; gives its callee and arguments."""
+        """Records a call, with what it is given and what it is called on; gives its callee and arguments. `called` is
+        then the call that it is called on what it gives, None for none."""
         func = node.func
         cls = func.__class__
         line = node.lineno
         reading, keeping, kept = False, -1, ""
+        called = None
         if cls is ast.Attribute:
             path, local = self.reach(func.value)  # type: ignore[attr-defined]
+            called = self.called
             attribute = func.attr  # type: ignore[attr-defined]
             callee = f"{path}.{attribute}"
             if local:
@@ -669,6 +680,7 @@ class Expressions(SourceText):
             callee = self.find_bound_method(name) or (name if name != self.this else "this")
         else:
             callee, _ = self.reach(func)
+            called = self.called
         arguments: list[FlowExpr] = []
         for place, argument in enumerate(node.args):
             inside = argument.__class__
@@ -698,6 +710,7 @@ class Expressions(SourceText):
             self.calls.append(
                 FlowCall(callee, given, line, column, self.guard, "", "" if returned else target, returned)
             )
+        self.called = called
         return callee, given
 
 

@@ -12,7 +12,7 @@ from functools import cached_property
 from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ...facts.flow import FlowCall, FlowExpr, Guard
-from .code import FlowCode, Fn, get_outer, get_tail, is_number
+from .code import FlowCode, Fn, find_parameter, get_outer, get_tail, is_number
 
 # Functions that give argv without what is ROS's; those of C++ put it into their third argument or return it.
 _COPIES = frozenset(
@@ -190,10 +190,17 @@ class CommandLine:
         for value, writer in self._list_parsings(head, fn):
             yield writer, get_outer(value.text)
 
-    def _list_parsings(self, path: str, fn: Fn) -> Iterator[tuple[FlowExpr, Fn]]:
-        """The calls of `parse_args()` whose result a variable keeps, also through a function that returns it."""
-        for writer, each in self.code.list_writes(self.code.identify(path, fn)):
-            value = each.value.parts[0] if each.value.kind == "index" and each.value.parts else each.value
+    def _list_parsings(self, path: str, fn: Fn, depth: int = 0) -> Iterator[tuple[FlowExpr, Fn]]:
+        """The calls of `parse_args()` whose result a variable keeps, also through a function that returns it, another
+        variable, or who gives it for a parameter."""
+        variable = self.code.identify(path, fn)
+        kept = [(each.value, writer) for writer, each in self.code.list_writes(variable)]
+        parameter = find_parameter(fn, path)
+        given = self.code.list_given(fn, parameter[0], path) if parameter is not None else ()
+        for value, writer in (*kept, *given):
+            value = value.parts[0] if value.kind == "index" and value.parts else value
+            if value.kind == "name" and (value.text, writer) != (path, fn) and depth < _DEEPEST:
+                yield from self._list_parsings(value.text, writer, depth + 1)
             if value.kind != "call":
                 continue
             targets = self.code.list_targets(value.text, writer)

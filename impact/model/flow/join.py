@@ -930,9 +930,12 @@ class Join:
         loads = owner.only_if if isinstance(owner, Running) else ""
         condition = "" if site.implied else self._describe_condition(use, owner)
         only_if = _join_conditions(loads, _describe_loading(value, owner), condition, value.only_if, replaced)
+        ran = owner.functions if isinstance(owner, Running) else ()
+        # A class that several nodes use is given the callback of each.
+        callbacks = tuple(fn for fn in site.callbacks if fn in ran) or site.callbacks
         return Endpoint(
             site.role, node.id if node else "", topic, type_, *_get_place(use), site.written, how, qos,
-            _make_callback(site.callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
+            _make_callback(callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
             use.row.framework, only_if, _make_code_name(site, value.text or "") if topic else "",
             self.list_guards(use.fn, use.call.guard),
         )  # fmt: skip

@@ -382,6 +382,8 @@ class FlowValues:
             yield FlowValue(value.text)
         elif kind == SETTING:
             yield FlowValue(value.text, cast(How, value.parts[0].text) if value.parts else "launch")
+        elif kind == "name" and (called := _find_read_call(value.text, value)) is not None:
+            yield from self._evaluate(called, fn, line, seen)
         elif kind == "name":
             yield from self._evaluate_name(value.text, fn, line, seen)
         elif kind == "join":
@@ -1476,15 +1478,17 @@ class FlowValues:
         if python and last in _STRING_METHODS and (head or value.receiver is not None):
             yield from self._evaluate_string_method(value, fn, line, seen)
             return
-        if head and (last in _SAME or (last == "get" and value.receiver is not None and not value.parts)):
-            if value.receiver is not None and (value.receiver.kind == "call" or head == "()"):
-                yield from self._evaluate(value.receiver, fn, line, seen)
+        got = last == "get" and not python and value.receiver is not None and not value.parts
+        if head and (last in _SAME or got):
+            called = value.receiver if not python else _find_read_call(head, value)
+            if called is not None and (called.kind == "call" or head == "()"):
+                yield from self._evaluate(called, fn, line, seen)
             elif head.endswith("()"):
                 yield from self._evaluate_inner(head.removesuffix("()"), fn, line, seen)
             else:
                 yield from self._evaluate_name(head, fn, line, seen)
             return
-        if head and last in ("get", "at") and value.parts and value.receiver is None:
+        if head and last in ("get", "at") and value.parts and (python or value.receiver is None):
             chosen = self.elements.select(FlowExpr("name", head), value.parts[0], fn, line)
             if chosen:
                 for one in chosen:
@@ -1581,8 +1585,9 @@ class FlowValues:
                     texts = [one.text or "" for one in row]
                     yield joined if joined.text is None else joined._replace(text=value.receiver.text.join(texts))
             return
-        if value.receiver is not None:
-            held = list(self._evaluate(value.receiver, fn, line, seen))
+        called = _find_read_call(head, value) if head else value.receiver
+        if called is not None:
+            held = list(self._evaluate(called, fn, line, seen))
         elif head.endswith("()"):
             held = list(self._evaluate_inner(head.removesuffix("()"), fn, line, seen))
         else:
@@ -1947,6 +1952,14 @@ def _mark_unknown(values: Iterable[FlowValue]) -> list[FlowValue]:
 def _get_key(value: FlowExpr) -> FlowExpr:
     """Of a pair, as a dictionary has it for each key, the key; all else as it is."""
     return value.parts[0] if value.kind == "list" and len(value.parts) == 2 else value
+
+
+def _find_read_call(path: str, value: FlowExpr) -> FlowExpr | None:
+    """The call whose result a path is, or what is kept in it; None where it is something else. value: an expression of
+    Python that begins with the path."""
+    while value.receiver is not None and get_tail(path) in _SAME:
+        path = path.rpartition(".")[0]
+    return value.receiver if path.endswith("()") else None
 
 
 def _mentions(value: FlowExpr, path: str) -> bool:
