@@ -420,6 +420,12 @@ class Elements:
                 yield ListElement(default, fn, fn.facts.line)
 
 
+def is_changed(path: str, fn: Fn) -> bool:
+    """Whether a function changes what a list holds, other than by an assignment."""
+    heads = (call.callee.rpartition(".") for call in fn.facts.calls)
+    return any(head == path and last in _PUT | _CHANGES for head, _, last in heads)
+
+
 def find_begun(value: FlowExpr) -> FlowExpr | None:
     """The list or map that `list.begin()` goes through; None for all else."""
     begun = _BEGIN.fullmatch(value.text) if value.kind == "call" else None

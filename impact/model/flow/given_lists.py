@@ -10,7 +10,7 @@ from typing import Any, Protocol
 from ...facts.flow import FlowExpr
 from .calls import Calls, FrameworkCall
 from .code import Fn, Variable, get_tail
-from .elements import DEFAULT, SETTING, ListElement
+from .elements import DEFAULT, SETTING, ListElement, is_changed
 from .reaching import FlowValue
 
 _MOST = 200
@@ -87,8 +87,9 @@ class GivenLists:
             # What is written otherwise, too, may be something else.
             variable = self._code.identify(value.text, fn)
             uses = self._values.list_filling(variable) if value.text.removeprefix("this.").isidentifier() else []
-            written = [each for _, each in self._code.list_writes(variable) if each.value.parts]
-            return uses[0] if len(uses) == 1 and not written else None
+            values = (each.value for _, each in self._code.list_writes(variable))
+            written = [one for one in values if one.kind != "make" or one.parts]
+            return uses[0] if len(uses) == 1 and not written and not is_changed(value.text, fn) else None
         while value.receiver is not None and get_tail(value.text) in _GIVING:
             value = value.receiver
         if value.kind != "call" or value.receiver is not None:
