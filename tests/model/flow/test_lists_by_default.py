@@ -94,7 +94,7 @@ def test_in_cpp(body, expected):
         ("other: 1", A_B),
         ("inputs: [/given]", {("/given", "launch")}),
         ("inputs: [/given, /more]", {("/given", "launch"), ("/more", "launch")}),
-    start = '<node pkg="mux" exec="mux" name="mux"><param from="$(find-pkg-share mux)/mux.yaml"/></node>'
+    ],
 )
 def test_with_a_launch(tmp_path, given, expected):
     launch = (
@@ -104,7 +104,7 @@ def test_with_a_launch(tmp_path, given, expected):
         "mux/package.xml": manifest("mux", "ament_cmake"),
         "mux/CMakeLists.txt": "project(mux)\nadd_executable(mux mux.cpp)\nament_package()\n",
         "mux/mux.cpp": CPP.replace("HERE", f'names_ = get_parameter("inputs").as_string_array(); {WALK}'),
-        "mux/mux.launch.xml": f"<launch>{start}</launch>",
+        "mux/mux.launch.xml": launch,
         "mux/mux.yaml": f"mux:\n  ros__parameters:\n    {given}\n",
     }
     found = graph_on_disk(tmp_path, files)
