@@ -78,8 +78,14 @@ def _list_reviewed(view: TargetView, package: Package, rows: ReviewedNames) -> I
         kind = "python" if use.language == "python" else "c++"
 
         def choose(found: Iterable[Availability], use: NameUse = use) -> Availability | None:
-            concerned = (row for row in found if view.may_concern(package, row.package, use.at.path, use.language))
-            return next(concerned, None)
+            concerned = [row for row in found if view.may_concern(package, row.package, use.at.path, use.language)]
+            if len(concerned) < 2:
+                return next(iter(concerned), None)
+            # Two libraries may have a name: Asio, and Boost under a shorter name of its namespace.
+            scope = use.text.partition("::")[0]
+            return min(
+                concerned, key=lambda row: (not view.includes_library(package, row.package), row.package != scope)
+            )
 
         row = choose(rows.find(use))
         early = rows.list_rows(kind, use.text, "not yet") if row is None and use.text not in rows.own else []
