@@ -3,10 +3,12 @@
 import os
 import signal
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from rosimpact.edges import processes
+from rosimpact.edges.limits import get_limits
 from rosimpact.impact.analysis import run_rules as judge
 from rosimpact.impact.analysis.check import check
 from rosimpact.impact.analysis.session import Options
@@ -144,6 +146,34 @@ def _dies_the_first_time(folder, number):
 def test_a_task_is_tried_again_in_a_new_process(tmp_path):
     found = dict(processes.run_forked(_dies_the_first_time, range(6), 1, tmp_path))
     assert found == {number: number for number in range(6)}
+
+
+_LEFT = []
+
+
+def _leaves_memory(begin, number):
+    begin()
+    _LEFT.append(bytearray(number))
+    return os.getpid()
+
+
+@needs_fork
+def test_what_a_task_leaves_is_taken_from_no_later_one(monkeypatch):
+    limits = replace(get_limits(), memory=50_000_000)
+    monkeypatch.setattr(processes, "get_limits", lambda: limits)
+    sizes = [30_000_000 + number for number in range(4)]
+    run_by = dict(processes.run_forked(_leaves_memory, sizes, 1, processes.reset_memory))
+    assert all(isinstance(one, int) for one in run_by.values())
+    # A process that has grown by as much as a task may need hands the next one to another.
+    assert 1 < len({*run_by.values()}) < 4
+    kept = dict(processes.run_forked(_leaves_memory, sizes, 1, _begin_nothing))
+    assert len({*kept.values()}) > len({*run_by.values()})
+    too_large = dict(processes.run_forked(_leaves_memory, [80_000_000], 1, processes.reset_memory))
+    assert [one.why for one in too_large.values()] == ["needed more than 47.7 MB of memory"]
+
+
+def _begin_nothing():
+    pass
 
 
 def _cannot_be_copied(number):

@@ -76,7 +76,7 @@ class Fn:
         self.is_lambda = facts.name.startswith("lambda@", len(facts.name) - len(get_tail(facts.name)))
         self.assigned: dict[str, list[Assignment]] = {}
         # What is declared here hides members of the same name.
-        self.locals = {p.name for p in facts.parameters}
+        self.locals = {p.name.lstrip("*") for p in facts.parameters}
         python = source.facts.language == "python"
         for each in facts.assignments:
             target = each.target
@@ -566,11 +566,18 @@ class FlowCode:
         return {(source.path, cls.name) for source in self.sources for cls in source.facts.classes}
 
     def list_enclosing_chain(self, fn: Fn) -> Iterator[Fn]:
-        """The function, and for a lambda those around it."""
+        """The function, and for a lambda, or a function of Python, those around it whose variables it sees: for a
+        method, those that its class stands in."""
         seen = 0
         while fn is not None and seen < 10:
             yield fn
-            fn, seen = self.find_enclosing(fn), seen + 1  # type: ignore[assignment]
+            fn, seen = self.find_enclosing(fn) or self._find_around_class(fn), seen + 1  # type: ignore[assignment]
+
+    def _find_around_class(self, fn: Fn) -> Fn | None:
+        """The function of Python that the class of a method stands in."""
+        if fn.source.facts.language != "python" or "." not in fn.scope:
+            return None
+        return self.by_name.get((fn.source.path, get_outer(fn.scope)))
 
     # Variables
 

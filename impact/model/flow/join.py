@@ -749,9 +749,13 @@ class Join:
     def _count_foreign(self, owners: _Owners, count: _Count) -> None:
         """Counts calls that look like a framework's, on objects of classes that are not in the code."""
         for use in self.calls.select_uses(FOREIGN):
-            if owners.list_owners(use):
+            if not self.is_of_other_ros(use) and owners.list_owners(use):
                 reason = f"whether it is called on an object of {use.row.framework} is not known"
                 count.call(Unresolved("call", reason, *_get_place(use), use.call.callee), ())
+
+    def is_of_other_ros(self, use: FrameworkCall) -> bool:
+        """Whether a call on an object of a class that is not in the code would be of ROS 1, in a workspace of ROS 2."""
+        return use.row.does == FOREIGN and use.row.framework == "roscpp" and self.ros == 2
 
     def _list_publishes(self, owners: _Owners, count: _Count) -> Iterator[Publish]:
         for statement in self.sites.statements:
@@ -926,9 +930,12 @@ class Join:
         loads = owner.only_if if isinstance(owner, Running) else ""
         condition = "" if site.implied else self._describe_condition(use, owner)
         only_if = _join_conditions(loads, _describe_loading(value, owner), condition, value.only_if, replaced)
+        ran = owner.functions if isinstance(owner, Running) else ()
+        # A class that several nodes use is given the callback of each.
+        callbacks = tuple(fn for fn in site.callbacks if fn in ran) or site.callbacks
         return Endpoint(
             site.role, node.id if node else "", topic, type_, *_get_place(use), site.written, how, qos,
-            _make_callback(site.callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
+            _make_callback(callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
             use.row.framework, only_if, _make_code_name(site, value.text or "") if topic else "",
             self.list_guards(use.fn, use.call.guard),
         )  # fmt: skip

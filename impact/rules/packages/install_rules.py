@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from ....edges.memory import cache_in_derived
 from ...model.cmake.build import Install
 from ...model.cmake.installed import lets_in, list_copied_files
-from ..vocabulary import At, Package, TargetView
+from ..vocabulary import At, Doubt, Package, TargetView, list_ended_doubts
 from .data_files import read_data_files
 
 LAUNCH_FILE = re.compile(r"[._]launch\.(?:py|xml|ya?ml)\Z")
@@ -21,6 +21,12 @@ def read_installs(view: TargetView, package: Package) -> list[Install] | None:
     if package.build.finds_declared and package.build.packaged is None:
         return None
     return [i for i in package.build.installs if view.applies(i.conditions)]
+
+
+def list_install_doubts(view: TargetView, package: Package) -> tuple[Doubt, ...]:
+    """What speaks against more than a note where a rule to install something is missing: packages of catkin run from
+    the build tree, and into a distro that has ended nothing is released any more."""
+    return list_ended_doubts(view) if package.build_type == "catkin" else ()
 
 
 def list_copying_rules(view: TargetView, package: Package) -> Iterator[Install]:
