@@ -13,7 +13,7 @@ import math
 import re
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import z3
@@ -185,6 +185,8 @@ class _Projector:
         for number, path in enumerate(self.exploration.paths):
             if path.result is not result:
                 continue
+            if self._is_over():
+                return self._list_seen(name, result)
             group = self._list_groups(number, (name,), frozenset((name,)))
             if group is not None:
                 groups.setdefault(frozenset(each.get_id() for each in group.conditions), group)
@@ -197,6 +199,16 @@ class _Projector:
             path.example[name] for path in self.exploration.paths if path.result is result and name in path.example
         ]
         return search.find_extremes([group.conditions for group in groups.values()], examples)
+
+    def _is_over(self) -> bool:
+        return time.monotonic() > self.deadline
+
+    def _list_seen(self, name: str, result: Reaction) -> FieldValues:
+        """What ways showed as an example, where there is no time to ask for more."""
+        search = _Search(self.inputs[name], self.solving, self.deadline)
+        paths = (path for path in self.exploration.paths if path.result is result)
+        found = search.find_extremes((), [path.example[name] for path in paths if name in path.example])
+        return replace(found, is_complete=False)
 
     # Texts.
 
@@ -222,12 +234,22 @@ class _Projector:
         texts: dict[bytes, None] = {}
         is_finite, is_relational, is_complete = True, False, True
         sizes: list[tuple[Number, Number]] = []
+        known: set[frozenset[int]] = set()
         for number, path in enumerate(self.exploration.paths):
             if path.result is not result:
                 continue
+            if self._is_over():
+                sizes.extend(self._list_seen(name, result).spans)
+                is_finite = is_complete = False
+                break
             group = self._list_groups(number, (name, *characters), own)
             if group is None:
                 continue
+            # Many ways say the same of a text, and differ in other fields.
+            key = frozenset(each.get_id() for each in group.conditions)
+            if key in known:
+                continue
+            known.add(key)
             is_relational |= not group.is_own
             if is_finite:
                 found = self._list_texts(name, characters, group.conditions, _MOST_TEXTS + 1 - len(texts))
@@ -373,7 +395,7 @@ class _Search:
                             key = self.make_key(pack_float(signed, self.variable.bits))
                             keys.update((key - 1, key, key + 1))
             else:
-                for value in _list_integers(term):
+                for value in self.solving.list_integers(term):
                     key = self.make_key(value & self.top)
                     keys.update((key - 1, key, key + 1))
         low, high = self._get_bounds()
@@ -546,21 +568,6 @@ class _Question:
             self._is_given_up = self.is_wide
         solver.pop()
         return found
-
-
-def _list_integers(term: z3.ExprRef) -> Iterator[int]:
-    """Constants in a term."""
-    pending, seen = [term], set()
-    while pending:
-        each = pending.pop()
-        if each.get_id() in seen:
-            continue
-        seen.add(each.get_id())
-        if z3.is_bv_value(each):
-            yield each.as_long()  # pyright: ignore[reportAttributeAccessIssue]
-            yield -each.as_long()  # pyright: ignore[reportAttributeAccessIssue]
-        else:
-            pending.extend(each.children())
 
 
 def merge_spans(spans: Iterable[tuple[Number, Number]]) -> tuple[tuple[Number, Number], ...]:

@@ -15,6 +15,8 @@ from .variable_tests import read_variable_test
 SETTING = "setting"
 """The kind of an expression that stands for the value of a parameter as a launch gives it. Where it is known otherwise,
 its only part says how."""
+DEFAULT = "default"
+"""The kind of an expression that stands for its only part as the default of a parameter."""
 _DEEPEST = 8
 _MOST = 200
 # Expressions looked at for one list.
@@ -40,7 +42,7 @@ _LONGEST = 118
 # Ends the path of an element at a place that is a variable.
 _ANY = ".[]"
 _BEGIN = re.compile(r"(.+)\.c?begin")
-_COUNTS = re.compile(r"(\w+) (<=?) (\d{1,4}|(?:this->)?[A-Za-z_]\w*)")
+_COUNTS = re.compile(r"(\w+) (<=?) (\d{1,4}|(?:this->)?[A-Za-z_][\w:]*(?:\.size\(\))?)")
 
 
 class ListElement(NamedTuple):
@@ -146,8 +148,9 @@ class Elements:
                 same = [one for one in fn.assigned[path] if one.guard == place]
                 steps = [one.value.text for one in same if one.operator == "+="]
                 if guard.kind == "while" and guard.line == each.line and limit and limit[1] == path and steps == ["1"]:
-                    written = FlowExpr("number" if limit[3].isdecimal() else "name", limit[3].replace("->", "."))
-                    most = self._find_count(written, fn, each.line)
+                    text = limit[3].replace("->", ".")
+                    kind = "number" if text.isdecimal() else "call" if text.endswith("()") else "name"
+                    most = self._find_count(FlowExpr(kind, text.removesuffix("()")), fn, each.line)
                     if len(same) != 1 or most is None:
                         return []
                     last = most.number + (limit[2] == "<=")
@@ -195,8 +198,11 @@ class Elements:
         return [one.elements[place] for one in held]
 
     def _find_held(self, value: FlowExpr, fn: Fn, line: int) -> list[HeldList] | None:
-        self._left = _MOST_STEPS
-        return self._list_held(value, fn, line, 0)
+        before, self._left = self._left, _MOST_STEPS
+        try:
+            return self._list_held(value, fn, line, 0)
+        finally:
+            self._left = before
 
     def _list_held(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[HeldList] | None:
         """The lists that an expression may be, None where one of them is not written out."""
@@ -412,6 +418,12 @@ class Elements:
                 yield ListElement(given, giver, line)
             elif default is not None and self._runs(giver):
                 yield ListElement(default, fn, fn.facts.line)
+
+
+def is_changed(path: str, fn: Fn) -> bool:
+    """Whether a function changes what a list holds, other than by an assignment."""
+    heads = (call.callee.rpartition(".") for call in fn.facts.calls)
+    return any(head == path and last in _PUT | _CHANGES for head, _, last in heads)
 
 
 def find_begun(value: FlowExpr) -> FlowExpr | None:

@@ -749,9 +749,13 @@ class Join:
     def _count_foreign(self, owners: _Owners, count: _Count) -> None:
         """Counts calls that look like a framework's, on objects of classes that are not in the code."""
         for use in self.calls.select_uses(FOREIGN):
-            if owners.list_owners(use):
+            if not self.is_of_other_ros(use) and owners.list_owners(use):
                 reason = f"whether it is called on an object of {use.row.framework} is not known"
                 count.call(Unresolved("call", reason, *_get_place(use), use.call.callee), ())
+
+    def is_of_other_ros(self, use: FrameworkCall) -> bool:
+        """Whether a call on an object of a class that is not in the code would be of ROS 1, in a workspace of ROS 2."""
+        return use.row.does == FOREIGN and use.row.framework == "roscpp" and self.ros == 2
 
     def _list_publishes(self, owners: _Owners, count: _Count) -> Iterator[Publish]:
         for statement in self.sites.statements:

@@ -21,9 +21,9 @@ from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number, select_overloads
 from .conditions import ConditionReader, DecidedCondition, is_truth
-from .elements import SETTING, Elements, KnownCount, ListElement, find_begun
+from .elements import DEFAULT, SETTING, Elements, KnownCount, ListElement, find_begun
 from .given_lists import GivenLists
-from .graph import How
+from .graph import NOT_GIVEN, How
 from .literals import spell_number
 from .makers import Makers
 from .named_in_turns import DefaultGiven, NamesInTurns
@@ -384,6 +384,9 @@ class FlowValues:
             yield FlowValue(value.text, cast(How, value.parts[0].text) if value.parts else "launch")
         elif kind == "name" and (called := _find_read_call(value.text, value)) is not None:
             yield from self._evaluate(called, fn, line, seen)
+        elif kind == DEFAULT:
+            for one in self._evaluate(value.parts[0], fn, line, seen):
+                yield one if one.how not in ("literal", "given") else one._replace(how="default")
         elif kind == "name":
             yield from self._evaluate_name(value.text, fn, line, seen)
         elif kind == "join":
@@ -585,6 +588,10 @@ class FlowValues:
         self._counted.add(mark)
         left = self._left
         try:
+            listed = _find_measured(value, fn)
+            held = self.elements.list_turns(listed, fn, line) if listed is not None else None
+            if held:
+                return KnownCount(len(held), _tell_how(held))
             found = self.evaluate(value, fn, line)
         finally:
             self._counted.discard(mark)
@@ -1517,7 +1524,7 @@ class FlowValues:
             if joined is not None:
                 yield from self._evaluate_join(joined, fn, line, seen)
                 return
-        if last == "to_string" and len(value.parts) == 1:
+        if last in ("to_string", "lexical_cast") and len(value.parts) == 1:
             found = list(self._evaluate(value.parts[0], fn, line, seen))
             # Of what is no whole number, it is not the same text.
             if found and all(one.text is not None and is_number(one.text) for one in found):
@@ -1739,6 +1746,30 @@ class FlowValues:
             given = None
         return FlowValue(given, "launch") if given is not None else None
 
+    def find_default(self, use: FrameworkCall) -> tuple[FlowExpr, Fn, int] | None:
+        """The only default of the parameter that a use declares or reads, where no launch sets it, with where it
+        stands."""
+        names = self._list_parameter_names(use, ())
+        name = names[0].text if len(names) == 1 else None
+        if not name or self._find_setting_of(use, name) is not None:
+            return None
+        own = DefaultGiven(use)
+        others = [one for one in self._list_declared(name) if one.use.call is not use.call]
+        others = [one for one in others if one.use.fn.source.package == use.fn.source.package]
+        near = [one for one in others if one.use.fn.source is use.fn.source]
+        found: list[tuple[FlowExpr, Fn, int]] = []
+        for one in (own, *(near or self._select_running(others) or others)):
+            default = self.calls.find_argument(one.use, one.use.row.default) if one.use.row.default else None
+            if default is not None and not _is_type(default):
+                found.append((default, one.use.fn, one.use.call.line))
+                if one is own:
+                    break
+        return found[0] if len(found) == 1 else None
+
+    def list_turns(self, value: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
+        """What a loop over a list goes through in its turns."""
+        return self.elements.list_turns(value, fn, line)
+
     def note_open(self) -> bool:
         """Whether a launch gives anything, which is noted."""
         if self._works:
@@ -1831,7 +1862,7 @@ class FlowValues:
                 None, "unresolved", f"{NO_DEFAULT}`{name}` is declared without a value: it is given at start"
             )
         elif not yielded:
-            reason = f"{NO_DEFAULT}`{name}` has no default here" if name else "which parameter it is, is not known"
+            reason = f"{NO_DEFAULT}`{name}` {NOT_GIVEN}" if name else "which parameter it is, is not known"
             yield FlowValue(None, "given", reason)
 
     def _is_typed_alone(self, one: DefaultGiven) -> bool:
@@ -1972,6 +2003,20 @@ def _mentions(value: FlowExpr, path: str) -> bool:
 def _restore_alone(values: list[FlowValue]) -> list[FlowValue]:
     """Values, where nothing is known beside which what is not known could hold, without the mark."""
     return values if any(one.text is not None for one in values) else [one._replace(beside=False) for one in values]
+
+
+def _find_measured(value: FlowExpr, fn: Fn) -> FlowExpr | None:
+    """The list whose length an expression is: of `len(list)` and `list.size()`; None for all else."""
+    if fn.source.facts.language == "python":
+        return value.parts[0] if value.kind == "call" and value.text == "len" and len(value.parts) == 1 else None
+    is_size = value.kind == "call" and value.text.endswith(".size") and not value.parts and value.receiver is None
+    return FlowExpr("name", value.text.removesuffix(".size")) if is_size else None
+
+
+def _tell_how(held: Iterable[ListElement]) -> How:
+    """How the elements of a list are known, as far as these say it themselves."""
+    kinds = {one.value.kind for one in held}
+    return "default" if DEFAULT in kinds else "launch" if SETTING in kinds else "literal"
 
 
 def _read_character(text: str) -> str:

@@ -58,8 +58,8 @@ def is_installed(installs: Iterable[Install], path: str) -> bool:
 
 def may_stay_behind(view: TargetView, package: Package, path: str) -> bool:
     """Whether a Python file counts as installed only since install rules take what is not known: a variable that
-    nothing sets may name it, or not, and so may data_files that only running setup.py tells. What a launch file or
-    script starts is there."""
+    nothing sets may name it, or not, and so may data_files that only running setup.py tells, and all that a build
+    system does whose files are not read. What a launch file or script starts is there."""
     if package.build_type == "ament_python":
         folder, inside = posixpath.dirname(path), package.strip_path(path)
         if "/" not in inside or inside.startswith((f"{package.name}/", "launch/")) or read_data_files(package):
@@ -70,7 +70,8 @@ def may_stay_behind(view: TargetView, package: Package, path: str) -> bool:
     known = [rule for rule in installs if not any("$" in item for item in rule.items)]
     inside = package.strip_path(path)
     by_setup = package.build_type == "catkin" and inside.startswith("src/") and package.has_files("setup.py")
-    if len(known) == len(installs) or by_setup or is_installed(known, path):
+    is_read = bool(package.build.files) or package.build_type == "catkin"
+    if (is_read and len(known) == len(installs)) or by_setup or is_installed(known, path):
         return False
     return posixpath.basename(path) not in list_references(view, package, "executable")
 

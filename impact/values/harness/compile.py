@@ -51,9 +51,10 @@ _IR_FLAGS = (
     f"-fsanitize={CHECKS}", "-fno-sanitize-recover=all",
 )  # fmt: skip
 _NATIVE_FLAGS = (
-    "-O1", "-g", "-fno-omit-frame-pointer", f"-fsanitize=address,{CHECKS}", "-fno-sanitize-recover=all",
-    "-fno-optimize-sibling-calls",
+    "-O0", "-gline-tables-only", "-fno-omit-frame-pointer", f"-fsanitize=address,{CHECKS}",
+    "-fno-sanitize-recover=all", "-fno-optimize-sibling-calls",
 )  # fmt: skip
+_NATIVE_FLAGS_OF_GCC = ("-O1", "-g", *_NATIVE_FLAGS[2:], "-Wno-psabi")
 
 
 class CannotCompile(Exception):
@@ -428,31 +429,40 @@ class Workshop:
 
     def _run_clang(self, unit: SourceUnit, clang: str, rest: Sequence[str], folder: Path) -> CompilerRun:
         """Runs clang as for IR, with the facade as it was compiled before where a unit has it as it is."""
+        return self._run_with_facade(unit, clang, _IR_FLAGS, rest, folder)
+
+    def _run_with_facade(
+        self, unit: SourceUnit, clang: str, mode: Sequence[str], rest: Sequence[str], folder: Path
+    ) -> CompilerRun:
+        """Runs clang on a unit. mode: the flags that decide what is made, for which there is a facade of its own."""
         flags = self._list_flags(unit)
-        made = self._find_precompiled(unit, clang)
+        made = self._find_precompiled(unit, clang, mode)
         if made is None:
-            return self._run([clang, *flags, *_IR_FLAGS, *rest], folder)
+            return self._run([clang, *flags, *mode, *rest], folder)
         at = flags.index("-include")
         # Its headers come first: the same ones elsewhere would define everything again.
         given = ("-include-pch", str(made), f"-I{made.parent / 'include'}")
-        run = self._run([clang, *flags[:at], *given, *flags[at:], *_IR_FLAGS, *rest], folder)
+        run = self._run([clang, *flags[:at], *given, *flags[at:], *mode, *rest], folder)
         if run.status > 0 and "precompiled header" in run.errors:
             # A macro of the package is another one in it.
-            return self._run([clang, *flags, *_IR_FLAGS, *rest], folder)
+            return self._run([clang, *flags, *mode, *rest], folder)
         if run.status < 0 or (run.status and (str(made) in run.errors or "PCH file" in run.errors)):
             self._facade.forget(made)
-            return self._run([clang, *flags, *_IR_FLAGS, *rest], folder)
+            return self._run([clang, *flags, *mode, *rest], folder)
         return run
 
-    def _find_precompiled(self, unit: SourceUnit, clang: str) -> Path | None:
+    def _find_precompiled(self, unit: SourceUnit, clang: str, mode: Sequence[str]) -> Path | None:
         """The facade, compiled once for all units of a standard, whatever further macros these define, none of which it
-        asks for; with the members that were added to its classes, once for all units that have the same ones."""
+        asks for; with the members that were added to its classes, once for all units that have the same ones, but not
+        for replays, which compile a unit once."""
         if unit.stubs is None or not unit.boost:
             return None
-        flags = [*self._list_macros(unit), *_IR_FLAGS]
+        flags = [*self._list_macros(unit), *mode]
         extras = unit.stubs.render_extras()
         if not extras:
             return self._facade.find_precompiled(clang, flags)
+        if mode is not _IR_FLAGS:
+            return None
         return self._facade.find_extended(clang, flags, extras, self.folder / "facades", self._run)
 
     def _describe(self, error: CompileError) -> str:
@@ -475,8 +485,8 @@ class Workshop:
         compiler = find_native_compiler(is_cut)
         if not compiler:
             raise CannotCompile(NO_SANITIZER if is_cut else NO_COMPILER)
-        extra = () if Path(compiler).name.startswith("clang") else ("-Wno-psabi",)
-        return self._build(units, compiler, (*_NATIVE_FLAGS, *extra), RUNTIME / "native.cpp", "replay")
+        flags = _NATIVE_FLAGS if Path(compiler).name.startswith("clang") else _NATIVE_FLAGS_OF_GCC
+        return self._build(units, compiler, flags, RUNTIME / "native.cpp", "replay")
 
     def build_fuzzer(self, units: Sequence[SourceUnit]) -> Path:
         """The program that libFuzzer drives. Raises CannotCompile."""
@@ -515,19 +525,23 @@ class Workshop:
         objects = []
         for number, unit in enumerate(units):
             at = self.folder / unit.name / f"{name}.o"
-            command = [compiler, *self._list_flags(unit), *flags, "-c", "harness.cpp", "-o", str(at)]
-            run = self._run(command, at.parent)
+            rest = ("-c", "harness.cpp", "-o", str(at))
+            if compiler == find_clang():
+                run = self._run_with_facade(unit, compiler, flags, rest, at.parent)
+            else:
+                run = self._run([compiler, *self._list_flags(unit), *flags, *rest], at.parent)
             if run.status == 0:
                 objects.append(str(at))
             elif number == 0:
                 raise CannotCompile(self._describe_run(run))
-        made = folder / f"{name}_runtime.o"
+        made = self.folder / f"{name}_runtime.o"
         own = [each for each in flags if not each.startswith("-fsanitize=fuzzer")]
-        run = self._run(
-            [compiler, "-std=gnu++17", "-w", *own, f"-I{RUNTIME}", "-c", str(runtime), "-o", str(made)], folder
-        )
-        if run.status != 0:
-            raise CannotCompile(self._describe_run(run))
+        if not made.exists():  # the same for all units
+            command = [compiler, "-std=gnu++17", "-w", *own, f"-I{RUNTIME}", "-c", str(runtime), "-o", str(made)]
+            run = self._run(command, folder)
+            if run.status != 0:
+                made.unlink(missing_ok=True)
+                raise CannotCompile(self._describe_run(run))
         link = [compiler, *flags, *objects, str(made), "-o", str(program), "-pthread", "-Wl,--no-demangle"]
         run = self._run(link, folder)
         if run.status != 0:

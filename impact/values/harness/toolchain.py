@@ -84,9 +84,12 @@ def find_clang() -> str:
 
 @cache
 def find_native_compiler(of_clang: bool = False) -> str:
-    """The compiler that replays are built with: g++, whose sanitizers come along, else clang++; empty for none.
-    of_clang: only clang++ will do."""
-    for name in (*(() if of_clang else ("g++",)), *_list_clangs()):
+    """The compiler that replays are built with: clang++, which has the facade compiled already, else g++, whose
+    sanitizers come along; empty for none. of_clang: only clang++ will do."""
+    clangs = _list_clangs()
+    if (first := find_clang()) in clangs:
+        clangs = [first, *(each for each in clangs if each != first)]
+    for name in (*clangs, *(() if of_clang else ("g++",))):
         path = shutil.which(name)
         if path and _links(path, ("-fsanitize=address,undefined",), "int main() { return 0; }"):
             return path

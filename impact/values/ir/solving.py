@@ -72,13 +72,18 @@ class Solving:
         self.questions = 0
         self.undecided = 0
         self._traits: dict[int, tuple[z3.ExprRef, Traits]] = {}
+        self._integers: dict[int, tuple[z3.ExprRef, tuple[int, ...]]] = {}
         self._answers: dict[frozenset[int], tuple[Model | SolverTimeout | None, Sequence[z3.BoolRef]]] = {}
         self._pairs: dict[tuple[str, int], tuple[z3.ExprRef, z3.ExprRef]] = {}
         self.guessing = Guessing(self.inputs, self.derived, self.holds_settled)
 
     def make_input(self, path: str, kind: InputKind, bits: int, is_signed: bool = False, most: int = 0):
-        """The variable of a path; made when it is asked for first."""
+        """The variable of a path; made when it is asked for first. Where it is asked for in another size, as parameters
+        may be whose names are not known, that is another variable."""
         found = self.inputs.get(path)
+        if found is not None and found.bits != bits:
+            path = f"{path}#{bits}"
+            found = self.inputs.get(path)
         if found is None:
             found = SymbolicInput(path, kind, bits, is_signed, z3.BitVec(path, bits), most)
             self.inputs[path] = found
@@ -119,6 +124,25 @@ class Solving:
             self._traits[number] = (each, self._derive_traits(each, children))
             pending.pop()
         return self._traits[term.get_id()][1]
+
+    def list_integers(self, term: z3.ExprRef) -> tuple[int, ...]:
+        """The constants in a term, and their negatives."""
+        known = self._integers.get(term.get_id())
+        if known is None:
+            found: set[int] = set()
+            pending, seen = [term], set()
+            while pending:
+                each = pending.pop()
+                if each.get_id() in seen:
+                    continue
+                seen.add(each.get_id())
+                if z3.is_bv_value(each):
+                    value = each.as_long()  # pyright: ignore[reportAttributeAccessIssue]
+                    found.update((value, -value))
+                else:
+                    pending.extend(each.children())
+            known = self._integers[term.get_id()] = term, tuple(sorted(found))
+        return known[1]
 
     def _derive_traits(self, term: z3.ExprRef, children: Sequence[z3.ExprRef]) -> Traits:
         if not children:
