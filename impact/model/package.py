@@ -1307,18 +1307,21 @@ class PackageJoin:
 
     def _list_strange_calls(self, path: str, labels: Collection[str], roles) -> Collection[tuple[int, int]]:
         """Where a file calls methods that rows with some labels are about, of objects of other classes."""
+        from ..targets.changes import load_uses
         from .cpp.receivers import Receivers
         from .cpp.resolver import Resolver
 
         vocabulary = self._find_vocabulary(roles)
         if vocabulary is None:
             return ()
-        rows = self.watched.in_cpp.patterns.values()
-        words = {pattern.word for each in rows for label, pattern in each if label in labels}
+        patterns = [row for rows in self.watched.in_cpp.patterns.values() for row in rows if row[0] in labels]
+        known = load_uses()
+        of_libraries = {pattern.word for label, pattern in patterns if label not in known or known[label].library}
         files = (path, *sorted(to for to in self.list_reached(path) if to != path and to in self.cpp))
         resolver = Resolver([*map(self.load, files), *map(self.load, self.list_offered(path))], vocabulary, None)
         declared = {dependency.name for dependency in self.manifest.dependencies}
-        return Receivers(resolver, frozenset({*declared, *self.home, self.name})).list_strange_calls(words)
+        receivers = Receivers(resolver, frozenset({*declared, *self.home, self.name}))
+        return receivers.list_strange_calls({pattern.word for _, pattern in patterns}, of_libraries)
 
     def list_errors(self, roles) -> Iterator[NameUse]:
         """The #error lines of files that targets compile."""

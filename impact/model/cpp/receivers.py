@@ -17,19 +17,21 @@ class Receivers:
         assert resolver.vocabulary is not None
         self._resolver, self._vocabulary, self._near = resolver, resolver.vocabulary, near
 
-    def list_strange_calls(self, words: Collection[str]) -> set[tuple[int, int]]:
+    def list_strange_calls(self, words: Collection[str], of_libraries: Collection[str]) -> set[tuple[int, int]]:
         """Line and column of calls of methods with some names, of objects whose class defines the method itself and has
-        no base of another package, or lies in a namespace that no package near has."""
+        no base of another package, or lies in a namespace that no package near has. of_libraries: the names that
+        classes of system libraries have, in whose namespaces no package of ROS lies."""
         known = self._resolver.known
         mentions = (one for one in known.list_mentions(sorted(words)) if one.form == "member")
-        return {(use.at.line, use.at.column) for use in known.list_uses(mentions) if self._is_strange(use)}
+        uses = known.list_uses(mentions)
+        return {(use.at.line, use.at.column) for use in uses if self._is_strange(use, use.word in of_libraries)}
 
-    def _is_strange(self, use: CppUse) -> bool:
+    def _is_strange(self, use: CppUse, of_library: bool) -> bool:
         if use.object is None or use.object.kind == "this":
             return False
         type_ = self._resolver.resolve_value(use.object, use.place)
         if type_ is None:
-            return self._lies_far(use.object, use)
+            return not of_library and self._lies_far(use.object, use)
         reached = type_.reach(use.arrow)
         return reached is not None and reached.own and reached.plain and self._is_own_method(reached, use.word)
 

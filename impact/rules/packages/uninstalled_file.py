@@ -161,8 +161,10 @@ def _find_launch_file(package: Package, installs) -> str:
         return ""  # what comes after a command that cannot be followed is not known
     if any(is_installed(installs, path) for path in files):
         return ""
-    programs = package.build.installed_targets
     catkin = package.build_type == "catkin"
+    # What ROS 2 starts has to be installed, which missing-install tells where it is not.
+    made = () if catkin else (target.output_name or target.name for target in package.build.targets)
+    programs = package.build.installed_targets.union(made)
     siblings = catkin and any(i.kind == "directory" and i.destination.split("/")[0] == "share" for i in installs)
     for use in package.linked.references:
         path, r = use.at.path, use.reference
