@@ -947,7 +947,29 @@ class Join:
         guards = self.list_guards(use.fn, use.call.guard)
         texts = [guard.text for guard in guards if guard.kind == "cpp"]
         texts += [f"something runs {guard.text}" for guard in guards if guard.kind == "never"]
-        return " && ".join((*texts, *self._list_closed(use, owner)))
+        closed = tuple(self._list_closed(use.fn, use.call.guard, owner)) or (self._describe_made(use.fn, owner, ()),)
+        return " && ".join(filter(None, (*texts, *closed)))
+
+    def _describe_made(self, fn: Fn, owner: Owner, seen: tuple[str, ...]) -> str:
+        """The conditions under which alone the objects of a function's class are made in a node, where none of them
+        holds as far as is known; empty where one may, or where not all is known that makes them. seen: the classes that
+        were asked already."""
+        cls = self.code.find_owner(fn)
+        if cls is None or cls.key in seen or len(seen) > _DEEPEST_GIVEN or not isinstance(owner, Running):
+            return ""
+        if any(self.code.find_owner(root) == cls for root in owner.program.roots):
+            return ""
+        kinds = (cls, *self.code.derived.get(cls.key, ()))
+        rows = (row for one in kinds for row in self.code.constructions.get(one.key, ()) if row[0] in owner.functions)
+        found: dict[str, None] = {}
+        for maker, _, line in rows:
+            for guard in maker.collect_guards(line) or (-1,):
+                closed = " && ".join(self._list_closed(maker, guard, owner))
+                closed = closed or self._describe_made(maker, owner, (*seen, cls.key))
+                if not closed:
+                    return ""
+                found[closed] = None
+        return " || ".join(found)
 
     def _is_called(self, fn: Fn, running: Running) -> bool:
         """Whether something that a node runs may call a function."""
@@ -965,12 +987,12 @@ class Join:
             known = self._called_of[id(running.functions)] = running.functions, called
         return fn in known[1]
 
-    def _list_closed(self, use: FrameworkCall, owner: Owner) -> Iterator[str]:
-        """The conditions around a call that do not hold in a node as far as is known, or of which that is not known
-        though they ask for what a launch gives."""
+    def _list_closed(self, fn: Fn, place: int, owner: Owner) -> Iterator[str]:
+        """The conditions around a place in a function, a guard's, that do not hold in a node as far as is known, or of
+        which that is not known though they ask for what a launch gives."""
         values = owner.limit_values() if isinstance(owner, Running) else self.values
-        for guard, decided in reversed(list(values.decide_guards(use.fn, use.call.guard))):
-            asks_open = decided.asks_open and (guard.kind != "unless" or self._has_other_branch(use.fn, guard))
+        for guard, decided in reversed(list(values.decide_guards(fn, place))):
+            asks_open = decided.asks_open and (guard.kind != "unless" or self._has_other_branch(fn, guard))
             if decided.holds is False or (decided.holds is None and (decided.is_given or asks_open)):
                 yield spell_condition(guard.kind, guard.text)
 
