@@ -307,8 +307,13 @@ class _Trace:
         keys: set[str] = set()
         written = self._select_running(self._select_own(code.list_writes(variable), variable, around))
         results = self._select_running(code.list_results(variable))
-        if at is not None and variable.kind == "local":
+        own = variable.kind == "member" and text.startswith("this.") and "." not in text.removeprefix("this.")
+        if at is not None and (own or variable.kind == "local"):
             last = find_last_write(fn, at, [*written, *results])
+            if own:
+                # Another function may have written it before this one has.
+                written = [row for row in written if row[0] is fn or last is None]
+                results = [row for row in results if row[0] is fn or last is None]
             written = [row for row in written if reaches(row, fn, at, last)]
             results = [row for row in results if reaches(row, fn, at, last)]
         for writer, each in written:
@@ -371,7 +376,7 @@ class _Trace:
 def find_last_write(
     fn: Fn, at: FlowCall | Assignment, rows: Sequence[tuple[Fn, FlowCall | Assignment]]
 ) -> FlowCall | Assignment | None:
-    """Of what writes a local variable, that which surely does so last before a statement of a function; None for
+    """Of what writes a variable, that which surely does so last before a statement of a function; None for
     none."""
     around = {-1, *fn.list_guards_around(at.guard)}
     sure = [each for writer, each in rows if writer is fn and each.line < at.line and each.guard in around]
@@ -381,7 +386,7 @@ def find_last_write(
 def reaches(
     row: tuple[Fn, FlowCall | Assignment], fn: Fn, at: FlowCall | Assignment, last: FlowCall | Assignment | None
 ) -> bool:
-    """Whether what writes a local variable may be what a statement of a function meets: nothing surely comes between,
+    """Whether what writes a variable may be what a statement of a function meets: nothing surely comes between,
     also where a loop comes back to it. last: as find_last_write() has it for all that write the variable."""
     writer, each = row
     if writer is not fn:

@@ -75,3 +75,36 @@ def test_a_node_of_python_is_the_one_that_the_variable_is_there(body, expected):
 def test_a_node_of_cpp_is_the_one_that_the_variable_is_there(body, expected):
     found = graph({"p/src/a.cpp": CPP.replace("BODY", body.replace("\n", "\n      "))})
     assert find_owners(found) == FIRST_ALONE | expected
+
+
+HELD = """
+import rclpy
+from std_srvs.srv import Empty
+
+class Driver:
+    def __init__(self, real):
+        if real:
+            self.node = rclpy.create_node("inner")
+            self.node.create_client(Empty, "real")
+        else:
+            self.node = rclpy.create_node("simulated")
+            self.node.create_client(Empty, "made")
+        self.node.create_client(Empty, "both")
+        self.more()
+
+    def more(self):
+        self.node.create_client(Empty, "more")
+
+def main():
+    rclpy.init()
+    Driver(ask())
+
+main()
+"""
+
+
+def test_a_node_that_an_object_keeps_is_the_one_that_a_branch_makes():
+    assert find_owners(graph({"p/a.py": HELD})) == {
+        ("/inner", "/real"), ("/simulated", "/made"), ("/inner", "/both"), ("/simulated", "/both"), ("/inner", "/more"),
+        ("/simulated", "/more"),
+    }  # fmt: skip
