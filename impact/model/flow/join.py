@@ -950,26 +950,42 @@ class Join:
         closed = tuple(self._list_closed(use.fn, use.call.guard, owner)) or (self._describe_made(use.fn, owner, ()),)
         return " && ".join(filter(None, (*texts, *closed)))
 
-    def _describe_made(self, fn: Fn, owner: Owner, seen: tuple[str, ...]) -> str:
-        """The conditions under which alone the objects of a function's class are made in a node, where none of them
-        holds as far as is known; empty where one may, or where not all is known that makes them. seen: the classes that
-        were asked already."""
+    def _describe_made(self, fn: Fn, owner: Owner, seen: tuple[Fn, ...]) -> str:
+        """The conditions under which alone a node comes to a function: those where the objects of its class are made,
+        or where it is called, if the code alone calls it. Empty where one may hold as far as is known, or where not all
+        is known that leads there. seen: the functions that were asked already."""
+        if fn in seen or len(seen) > _DEEPEST_GIVEN or not isinstance(owner, Running) or fn in owner.program.roots:
+            return ""
         cls = self.code.find_owner(fn)
-        if cls is None or cls.key in seen or len(seen) > _DEEPEST_GIVEN or not isinstance(owner, Running):
-            return ""
-        if any(self.code.find_owner(root) == cls for root in owner.program.roots):
-            return ""
-        kinds = (cls, *self.code.derived.get(cls.key, ()))
-        rows = (row for one in kinds for row in self.code.constructions.get(one.key, ()) if row[0] in owner.functions)
+        rows: list[tuple[Fn, int]] = []
+        if cls is not None and not any(self.code.find_owner(root) == cls for root in owner.program.roots):
+            kinds = (cls, *self.code.derived.get(cls.key, ()))
+            made = (row for one in kinds for row in self.code.constructions.get(one.key, ()))
+            rows = [(maker, guard) for maker, _, line in made for guard in maker.collect_guards(line) or (-1,)]
+        found = self._join_closed(rows, owner, (*seen, fn))
+        if not found and self.called.is_called_by_code(fn) and fn not in self._handed_on:
+            rows = [(caller, call.guard) for caller, call in self.code.callers.get(fn, ())]
+            found = self._join_closed(rows, owner, (*seen, fn))
+        return found
+
+    def _join_closed(self, rows: Iterable[tuple[Fn, int]], owner: Running, seen: tuple[Fn, ...]) -> str:
+        """The conditions of places in functions that a node runs, each the one of a guard, where none of them holds as
+        far as is known; empty where one may."""
         found: dict[str, None] = {}
-        for maker, _, line in rows:
-            for guard in maker.collect_guards(line) or (-1,):
-                closed = " && ".join(self._list_closed(maker, guard, owner))
-                closed = closed or self._describe_made(maker, owner, (*seen, cls.key))
+        for fn, guard in rows:
+            if fn in owner.functions:
+                closed = " && ".join(self._list_closed(fn, guard, owner)) or self._describe_made(fn, owner, seen)
                 if not closed:
                     return ""
                 found[closed] = None
         return " || ".join(found)
+
+    @cached_property
+    def _handed_on(self) -> frozenset[Fn]:
+        """The functions that are given to others, as callbacks are."""
+        given = (fn for site in self.sites.endpoints for fn in site.callbacks)
+        timed = (fn for timer in self.sites.timers for fn in timer.callbacks)
+        return frozenset((*given, *timed, *self.code.bound))
 
     def _is_called(self, fn: Fn, running: Running) -> bool:
         """Whether something that a node runs may call a function."""

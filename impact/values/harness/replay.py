@@ -27,6 +27,10 @@ _FILE_BYTES = 50_000_000
 _OUTPUT_BYTES = 20_000_000
 _UNKNOWN, _IMPOSSIBLE, _ENDLESS = 77, 78, 79
 _FRAME = re.compile(r"^\s*#\d+ 0x[0-9a-f]+ in (?P<function>.*?) (?P<path>/[^:\s]+):(?P<line>\d+)", re.MULTILINE)
+_FILE_FRAME = re.compile(
+    r"^\s*#\d+ 0x[0-9a-f]+ in (?P<function>.*?) (?P<path>/[^:\s()]+)(?::(?P<line>\d+))?", re.MULTILINE
+)
+_TRACE = re.compile(r"^(?=\s*#0 0x)", re.MULTILINE)
 _BARE_FRAME = re.compile(
     r"^(?P<start>\s*#\d+ 0x[0-9a-f]+ in .*?) \((?P<module>/[^()\s]+)\+(?P<offset>0x[0-9a-f]+)\).*$", re.MULTILINE
 )
@@ -208,9 +212,9 @@ def _judge(case: _Case, errors: str, root: Path) -> Replayed:
 
 def classify_crash(errors: str, is_endless: bool, root: Path) -> tuple[CrashKind, CodeLine, str]:
     """Kind, line and text of a crash, from what the sanitizers, libstdc++ and the C library wrote."""
-    place = _find_frame(errors, root)
     if is_endless:
-        return CrashKind.ENDLESS, place, ""
+        return CrashKind.ENDLESS, _find_looping(errors, root), ""
+    place = _find_frame(errors, root)
     if (found := _RUNTIME_ERROR.search(errors)) is not None:
         here = _make_line(found["path"], int(found["line"]), root)
         return _classify_runtime_error(found["text"]), here or place, found["text"]
@@ -302,6 +306,19 @@ def _find_frame(errors: str, root: Path) -> CodeLine:
         if line is not None:
             return line
     return NOWHERE
+
+
+def _find_looping(errors: str, root: Path) -> CodeLine:
+    """The innermost line of the workspace in the first of several stack traces that has one there; the file alone where
+    none has."""
+    found = NOWHERE
+    for trace in _TRACE.split(errors):
+        rows = ((each["path"], int(each["line"] or 0)) for each in _FILE_FRAME.finditer(trace))
+        inner = next(filter(None, (_make_line(path, line, root) for path, line in rows)), NOWHERE)
+        if inner.line:
+            return inner
+        found = inner if found is NOWHERE else found
+    return found
 
 
 def _make_line(path: str, line: int, root: Path) -> CodeLine | None:

@@ -74,7 +74,9 @@ def find_conditions(files: dict[str, str]) -> set[tuple[str, str]]:
 )
 def test_what_an_object_of_cpp_makes(default, beside, expected):
     text = CPP.replace("DEFAULT", default).replace("BESIDE", beside)
-    assert find_conditions({"p/src/desk.cpp": text}) == {("/lamp", expected), ("/more", expected)}
+    # What is made in a method depends on who calls that, too.
+    called = "" if default == "true" else "lit_"
+    assert find_conditions({"p/src/desk.cpp": text}) == {("/lamp", expected), ("/more", called)}
 
 
 @pytest.mark.parametrize(
@@ -100,3 +102,37 @@ def test_objects_of_objects_too():
                         "held_ = std::make_unique<Holder>(node_);")  # fmt: skip
     text = text.replace("lamp_, other_;", "lamp_;\n      std::unique_ptr<Holder> held_;")
     assert ("/lamp", "lit_") in find_conditions({"p/src/desk.cpp": text})
+
+
+def test_a_function_that_is_called_only_under_a_condition():
+    text = """
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import Empty
+
+class Desk(Node):
+    def __init__(self):
+        super().__init__("desk")
+        self.declare_parameter("ask", False)
+        self.create_timer(1.0, self.begin)
+
+    def ask(self):
+        self.pub = self.create_publisher(Empty, "asked", 1)
+
+    def begin(self):
+        self.more = self.create_publisher(Empty, "begun", 1)
+
+def main():
+    rclpy.init()
+    node = Desk()
+    if node.get_parameter("ask").value:
+        node.ask()
+        node.begin()
+    rclpy.spin(node)
+
+main()
+"""
+    conditions = dict(find_conditions({"p/desk.py": text}))
+    assert "ask" in conditions["/asked"]
+    # A timer calls the other one all the same.
+    assert conditions["/begun"] == ""
