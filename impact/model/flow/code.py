@@ -1148,10 +1148,12 @@ class FlowCode:
             found = self.list_defined(f"{receiver}.{name}", fn.source) if variable.kind == "global" else []
             if found:
                 return found
-            owner = self.find_owner(fn) if name == "__init__" else None
-            named = self.find_class(receiver, fn.source, fn.scope) if owner is not None else None
-            if owner is not None and named is not None and named.key in {one.key for one in self.list_bases(owner)[1:]}:
-                return self.find_method(named, name)
+            named = self.find_class(receiver, fn.source, fn.scope) if variable.kind == "global" else None
+            if named is not None:
+                # What a class is asked for its objects give as well, but the method of a base, which is given the object.
+                owner = self.find_owner(fn)
+                inherits = owner is not None and named.key in {one.key for one in self.list_bases(owner)[1:]}
+                return self.find_method(named, name) if not inherits or name == "__init__" else []
         cls = self._find_receiver_class(receiver, fn) if depth == 0 else self._resolve_receiver(receiver, fn, depth)
         return [] if cls is None else [*self.find_method(cls, name), *self.list_overrides(cls, name)]
 
@@ -1353,6 +1355,9 @@ def _find_made(fn: Fn, code: FlowCode) -> Iterator[tuple[str, tuple[FlowExpr, ..
             yield get_outer(call.callee), call.arguments, call.line
         elif fn.source.facts.language == "python" and (last[:1].isupper() or code.is_class(call.callee, fn)):
             yield code.resolve_name(call.callee, fn.source), call.arguments, call.line
+        elif call.callee == "this" and (own := code.find_owner(fn)) and not code.find_method(own, "__call__"):
+            # `cls(...)` in a method of the class.
+            yield own.name, call.arguments, call.line
         elif last == "emplace_back" and call.callee != last and fn.source.facts.language == "cpp":
             # Into a container of objects: of pointers, it is given one.
             written = code.find_written_type(call.callee.rpartition(".")[0], fn)
