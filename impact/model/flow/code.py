@@ -1150,7 +1150,7 @@ class FlowCode:
                 return found
             named = self.find_class(receiver, fn.source, fn.scope) if variable.kind == "global" else None
             if named is not None:
-                # What a class is asked for its objects give as well, but the method of a base, which is given the object.
+                # As of its objects; but the method of a base is given the object.
                 owner = self.find_owner(fn)
                 inherits = owner is not None and named.key in {one.key for one in self.list_bases(owner)[1:]}
                 return self.find_method(named, name) if not inherits or name == "__init__" else []
