@@ -1,11 +1,12 @@
 """Measures how many of the breaks that a packager's newer libraries bring `check` names before anybody builds.
 
 RoboStack builds ROS packages against conda-forge's libraries and patches what breaks. patches.jsonl has such patches,
-each confirmed by a reader: what is at fault, in which file of which release, and the day of the patch. A record counts
+each confirmed by a reader: what is at fault, in which file of which release, and the day of the patch;
+patches_second.jsonl has others, and of a release that no clone has the newest commit before the patch. A record counts
 as found when an error or warning for the platform on that day names the fault in that file, or elsewhere in the
 package.
 
-usage: patches.py --score score.py --clones FOLDER [--out FILE] [--jobs 2]
+usage: patches.py --score score.py --clones FOLDER [--records FILE] [--out FILE] [--jobs 2]
 
 `--score`: the judgement, as for breaks.py. `--clones`: git repositories as OWNER+NAME/repo, OWNER+NAME or OWNER/NAME.
 """
@@ -69,10 +70,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--score", required=True)
     parser.add_argument("--clones", type=Path, required=True)
+    parser.add_argument("--records", type=Path, default=RECORDS)
     parser.add_argument("--out", type=Path)
     parser.add_argument("--jobs", type=int, default=2)
     args = parser.parse_args()
-    records = first_sight.read_records(RECORDS)
+    records = first_sight.read_records(args.records)
     clones = {one.name: one for one in mining.find_clones(args.clones, sorted({r["repo"] for r in records}))}
     jobs = [(clones[record["repo"]], record) for record in records if record["repo"] in clones]
     with ProcessPoolExecutor(args.jobs, initializer=start, initargs=(args.score,)) as pool:

@@ -33,6 +33,7 @@ from pathlib import Path
 
 import first_sight
 import mining
+from rosimpact.edges.console import UserError
 from rosimpact.impact.analysis.check import check
 from rosimpact.impact.analysis.session import Options
 from rosimpact.impact.rules.rule import load_rules
@@ -44,11 +45,16 @@ RIGHT = frozenset(("true", "true-but-latent"))
 PER_RULE = 2
 
 
-def check_commit(job: tuple[mining.Clone, str, tuple[str, ...]], preview: bool = False) -> list[dict]:
-    """What `check` says of a commit of a clone: its errors and warnings, with repo and commit. job: the clone, the
-    commit and the targets. A check that fails says nothing; its reason is printed."""
+def check_commit(job: tuple[mining.Clone, str, tuple[str, ...]], preview: bool = False) -> list[dict] | None:
+    """What `check` says of a commit of a clone: its errors and warnings, with repo and commit; None where the clone has
+    no such commit. job: the clone, the commit and the targets. A check that fails says nothing; its reason is
+    printed."""
     clone, commit, targets = job
-    report = check(str(clone.folder), Options(targets=targets, rev=commit, jobs=1, preview=preview))
+    try:
+        report = check(str(clone.folder), Options(targets=targets, rev=commit, jobs=1, preview=preview))
+    except UserError as error:  # a clone that lacks the commit
+        print(f"{clone.name}: {error}", file=sys.stderr)
+        return None
     if report.failure:
         print(f"{clone.name}: {report.failure}", file=sys.stderr)
         return []
@@ -161,7 +167,8 @@ def _list_jobs(clones: Sequence[mining.Clone], records: Iterable[dict]) -> list[
     for record in records:
         day = f"@{record['day']}" if record.get("day") else ""
         targets = (record["distro"] + day,) if record.get("distro") else ()
-        trees[record["repo"], record.get("commit") or record["tag"], targets].append(record)
+        revision = (record.get("commit") or record["tag"]).removeprefix("HEAD@")
+        trees[record["repo"], revision, targets].append(record)
     return [
         ((by_name[repo.lower()], revision, targets), rows)
         for (repo, revision, targets), rows in trees.items()
@@ -172,15 +179,17 @@ def _list_jobs(clones: Sequence[mining.Clone], records: Iterable[dict]) -> list[
 def recheck(clones: Path, batch: str, jobs: int) -> int:
     records = judged(first_sight.BATCHES, batch)
     trees = _list_jobs(mining.find_clones(clones, sorted({record["repo"] for record in records})), records)
-    back = 0
+    back = asked = 0
     with ProcessPoolExecutor(jobs) as pool:
         for (_, rows), said in zip(trees, pool.map(check_commit, [job for job, _ in trees]), strict=True):
+            if said is None:
+                continue
+            asked += len(rows)
             again, gone = compare(rows, said)
             back += len(again)
             for word, found in (("false and back", again), ("right and gone", gone)):
                 for row in found:
                     print(f"{word}: {row['repo']} {row['path']}:{row['line']} {row['rule']} {row['subject']}")
-    asked = sum(len(rows) for _, rows in trees)
     print(f"{asked} of {len(records)} findings asked again, {back} that were judged false are back")
     return 1 if back else 0
 
@@ -192,7 +201,7 @@ def draw(args: argparse.Namespace) -> None:
     found: list[dict] = []
     with ProcessPoolExecutor(args.jobs) as pool:
         for said in pool.map(partial(check_commit, preview=args.preview), heads):
-            found += said
+            found += said or ()
     chosen = choose(found, args.number, args.share_errors, args.seed)
     first_sight.write_records(args.out, chosen)
     severities = Counter(finding["severity"] for finding in found)

@@ -113,6 +113,8 @@ def main(arguments: list[str] | None = None) -> None:
     for item in given.suite:
         platform, _, lists = item.partition("=")
         suites[platform] = read_dependencies(Path(lists))
+        if not suites[platform]:
+            parser.error(f"{lists}: no Packages index of {platform}; run apt-get update first")
         print(platform, len(suites[platform]), "packages", flush=True)
     keys = frozenset(name for names in read_keys(load_snapshot()).debian.values() for name in names)
     made = build_graph(suites, keys, infer_packages(Providers(given.output).list_provider_groups()))

@@ -2,8 +2,8 @@
 
 Each table has a builder of its own; this runs them in the order in which one reads what another wrote, each in a
 process of its own, and remembers in a work folder which have ended: a build that was stopped goes on where it was. A
-table whose sources the file does not name, and one that is reviewed by hand, stays as it is. See DATA.md for what each
-builder reads.
+table whose sources the file does not name, or that are not there, or whose builder fails, and one that is reviewed by
+hand, stays as it is, and the builders behind it read it so. See DATA.md for what each builder reads.
 """
 
 from __future__ import annotations
@@ -87,9 +87,9 @@ class BuildStep(NamedTuple):
 
 
 class BuiltTable(NamedTuple):
-    """What became of a step: `made`, `kept` (made by an earlier run), `left` (its sources are not named), `failed`, or
-    `blocked` (it reads what one that failed would have made, which is said). seconds: what it took. said: the last
-    lines that it printed."""
+    """What became of a step: `made`, `kept` (made by an earlier run), `left` (its sources are not named), `unreached`
+    (some that are named are not there, which is said), or `failed`. seconds: what it took. said: the last lines that it
+    printed."""
 
     step: str
     outcome: str
@@ -252,9 +252,9 @@ STEPS = (
 """Every builder, each behind those whose files it reads."""
 
 
-def read_sources(file: Path) -> Sources:
-    """The sources that a file names, with absolute paths. Raises UserError for one that cannot be read, that names what
-    is no source, or a path that does not exist."""
+def read_sources(file: Path) -> tuple[Sources, frozenset[str]]:
+    """The sources that a file names, with absolute paths, and those paths that do not exist. Raises UserError for one
+    that cannot be read, and that names what is no source."""
     try:
         text = read_file(file, get_limits().settings).decode()
         named = msgspec.convert(load_toml(text), Sources)
@@ -263,18 +263,19 @@ def read_sources(file: Path) -> Sources:
     except (OSError, ValueError) as error:
         raise UserError(f"{file}: {error}") from None
     home = file.absolute().parent
+    absent: set[str] = set()
 
     def locate(path: str) -> str:
         found = home / path
         if path and not found.exists():
-            raise UserError(f"{file}: {path}: not there; correct the path, or leave it out")
+            absent.add(str(found))
         return str(found) if path else ""
 
     def locate_all(paths: Mapping[str, str]) -> dict[str, str]:
         return {name: locate(path) for name, path in paths.items()}
 
     installed = (one.rpartition("=")[::2] for one in named.includes.installed)
-    return Sources(
+    located = Sources(
         rosdistro=locate(named.rosdistro),
         meta_ros=locate(named.meta_ros),
         clones=locate(named.clones),
@@ -293,6 +294,7 @@ def read_sources(file: Path) -> Sources:
         opencv=locate(named.opencv),
         release_tags=named.release_tags,
     )
+    return located, frozenset(absent)
 
 
 def build_everything(
@@ -307,21 +309,20 @@ def build_everything(
 
     output: the data folder; what is missing in it of the shipped tables is copied there first, so that the reviewed
     ones are in it. work: keeps which steps have ended, what the builders keep, and what they print. only: names of
-    steps, all when empty. again: steps that are run although they have ended. Steps that read what a step that failed
-    makes are not run. Raises UserError for unknown steps and sources that are not there.
+    steps, all when empty. again: steps that are run although they have ended. Of a step that fails the tables stay as
+    they were. Raises UserError for unknown steps and a file of sources that cannot be read.
     """
     known = {step.name for step in STEPS}
     unknown = sorted({*only, *again} - known)
     if unknown:
         raise UserError(f"no step `{unknown[0]}`; the steps are {', '.join(step.name for step in STEPS)}")
-    sources = read_sources(file)
+    sources, absent = read_sources(file)
     check_writable_path(output / "snapshot.json")
     output, work = output.absolute(), work.absolute()
     for folder in (output, work / LOGS):
         folder.mkdir(parents=True, exist_ok=True)
     _copy_missing(output)
     ended = _read_state(work / _STATE)
-    failed: set[str] = set()
     for place, step in enumerate(STEPS):
         if report is not None:
             report(step.name, place, len(STEPS))
@@ -329,21 +330,22 @@ def build_everything(
         if arguments is None:
             yield BuiltTable(step.name, "left", 0.0, ())
             continue
-        lacking = next((name for name in _list_before(step) if name in failed), None)
-        if lacking is not None:
-            failed.add(step.name)
-            yield BuiltTable(step.name, "blocked", 0.0, (f"`{lacking}` failed",))
+        unreached = tuple(f"{path} is not there" for path in sorted(absent) if any(path in word for word in arguments))
+        if unreached:
+            yield BuiltTable(step.name, "unreached", 0.0, unreached)
             continue
         key = _compute_key(arguments, _list_read(step, output))
         before = ended.get(step.name)
         if before is not None and before.key == key and step.name not in again:
             yield BuiltTable(step.name, "kept", before.seconds, before.said)
             continue
+        stored = {path: path.read_bytes() for path in (output / name for name in step.makes) if path.exists()}
         started = time.monotonic()
         status, said = _run(arguments, output, work, work / LOGS / f"{step.name}.txt")
         seconds = time.monotonic() - started
         if status:
-            failed.add(step.name)
+            for path, data in stored.items():
+                write_file(path, data)
             yield BuiltTable(step.name, "failed", seconds, said[-1:])
             continue
         # Some add to what they read.

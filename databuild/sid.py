@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 import gzip
+import json
 import os
 import re
 import subprocess
@@ -20,11 +21,12 @@ from collections.abc import Iterator
 from email.utils import parsedate_to_datetime
 from pathlib import Path
 
+import zstandard
+
 from ..edges.files import write_file
 from ..impact.targets.distro.conda import SID
 from ..impact.targets.tables import DATA
 from ..impact.targets.unpacked import read_table
-from .conda import write_channels
 from .libraries import extract_upstream_version
 
 FILE = "conda.json.zst"
@@ -94,6 +96,18 @@ def _fetch_changelog(package: str, work: Path, configuration: Path) -> bytes:
             text = text or (gzip.decompress(packed) if packed else b"")
         file.unlink()
     return text
+
+
+def write_channels(file: Path, channels: dict[str, dict[str, dict[str, str]]]) -> None:
+    """Writes the table, a library a line."""
+    lines = (
+        f"{json.dumps(channel)}: {{\n"
+        + ",\n".join(f"  {json.dumps(name)}: {json.dumps(rows)}" for name, rows in libraries.items())
+        + "\n}"
+        for channel, libraries in channels.items()
+    )
+    text = "{\n" + ",\n".join(lines) + "\n}\n"
+    write_file(file, zstandard.ZstdCompressor(level=19).compress(text.encode()))
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -242,6 +242,16 @@ def allow_memory(size: int) -> None:
                 resource.setrlimit(resource.RLIMIT_AS, (now + size if most < 0 else min(now + size, most), most))
 
 
+def reset_memory() -> None:
+    """Lets a task need as much memory beyond what its process has by now as the first one may, whatever those before it
+    have left. A process that has grown by as much already gives it to a new one, by a MemoryError."""
+    if _SHARED:
+        allowed = get_limits().memory
+        if _measure_memory() > _BEGUN[0] + allowed:
+            raise MemoryError
+        _allow_further(allowed)
+
+
 def compute_seconds(size: int) -> float:
     """Seconds of processor time that extracting from so many bytes may take."""
     budget = get_limits()
@@ -249,6 +259,8 @@ def compute_seconds(size: int) -> float:
 
 
 _SHARED: list[mmap.mmap] = []
+# Bytes of addresses that this process began with.
+_BEGUN = [0]
 
 
 def run_forked(
@@ -313,6 +325,7 @@ def _serve(
         signal.signal(signal.SIGPROF, signal.SIG_DFL)
         threading.Thread(target=_die_with, args=(parent,), daemon=True).start()
         _be_silent()
+        _BEGUN[0] = _measure_memory()
         _limit_memory()
         while (packed := _receive(tasks)) is not None:
             try:
@@ -376,13 +389,20 @@ def limit_memory(size: int) -> Iterator[None]:
             resource.setrlimit(resource.RLIMIT_AS, before)
 
 
+def _measure_memory() -> int:
+    """Bytes of addresses that this process has; 0 where the system does not tell."""
+    try:
+        with open("/proc/self/statm", "rb") as file:
+            return int(file.read(200).split()[0]) * os.sysconf("SC_PAGESIZE")
+    except (OSError, ValueError):
+        return 0
+
+
 def _allow_further(size: int) -> None:
     import resource
 
-    try:
-        with open("/proc/self/statm", "rb") as file:
-            has = int(file.read(200).split()[0]) * os.sysconf("SC_PAGESIZE")
-    except (OSError, ValueError):
+    has = _measure_memory()
+    if not has:
         return
     _, most = resource.getrlimit(resource.RLIMIT_AS)
     wanted = has + size

@@ -3,10 +3,13 @@
 import os
 import signal
 import time
+from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from rosimpact.edges import processes
+from rosimpact.edges.limits import get_limits
 from rosimpact.impact.analysis import run_rules as judge
 from rosimpact.impact.analysis.check import check
 from rosimpact.impact.analysis.session import Options
@@ -144,6 +147,29 @@ def _dies_the_first_time(folder, number):
 def test_a_task_is_tried_again_in_a_new_process(tmp_path):
     found = dict(processes.run_forked(_dies_the_first_time, range(6), 1, tmp_path))
     assert found == {number: number for number in range(6)}
+
+
+_LEFT = []
+
+
+def _leaves_memory(size):
+    processes.reset_memory()
+    _LEFT.append(size)
+    return os.getpid()
+
+
+@needs_fork
+def test_a_process_that_has_grown_too_much_hands_tasks_to_another(monkeypatch):
+    limits = replace(get_limits(), memory=50)
+    monkeypatch.setattr(processes, "get_limits", lambda: limits)
+    monkeypatch.setattr(processes, "_measure_memory", lambda: 1_000 + sum(_LEFT))
+    allowed = []
+    monkeypatch.setattr(processes, "_allow_further", allowed.append)
+    run_by = dict(processes.run_forked(_leaves_memory, range(30, 36), 1))
+    # Two tasks leave more than one may need.
+    assert all(isinstance(one, int) for one in run_by.values())
+    assert 3 <= len({*run_by.values()}) < 6
+    assert max(Counter(run_by.values()).values()) == 2
 
 
 def _cannot_be_copied(number):

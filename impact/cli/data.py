@@ -72,16 +72,15 @@ def _build_everything(sources: Path, output: Path, work: Path, step: list[str], 
         told = f": {'; '.join(built.said)}" if built.said else ""
         took = f" in {built.seconds:.0f} s" if built.outcome == "made" else ""
         print_answer(f"{built.step}: {_OUTCOMES[built.outcome]}{took}{told}", "text")
-        if built.outcome in ("failed", "blocked"):
-            status = 2
         if built.outcome == "failed":
+            status = 2
             say(f"rosimpact: {built.step} failed; all that it printed is in {work / LOGS / built.step}.txt")
     return status
 
 
 _OUTCOMES = {
     "made": "built", "kept": "built by an earlier run", "left": "left as it is, since no sources are named",
-    "failed": "failed", "blocked": "not built",
+    "failed": "failed, and left as it is", "unreached": "left as it is",
 }  # fmt: skip
 
 

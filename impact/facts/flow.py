@@ -33,8 +33,9 @@ class FlowExpr(msgspec.Struct, frozen=True, array_like=True, gc=False):
     | other | the source, its white space as single blanks, at most 120 characters | of a comprehension, what each
       element is |
 
-    receiver: of a call in C++ that is made on what another call or a made object gives (`QoS(1).reliable()`), that one;
-    in Python the literal that a method is called on (`"/".join(names)`).
+    receiver: of a call that is made on what another call or a made object gives (`QoS(1).reliable()`), that one; in
+    Python also of a name that begins with a call (`get_parameter("a").value`), and the literal that a method is called
+    on (`"/".join(names)`).
     """
 
     kind: str

@@ -583,8 +583,8 @@ def read_build(state: PackageState, facts: Mapping[str, Any]) -> BuiltPackage:
                         name, program = given["PLUGIN"].strip('"'), given.get("EXECUTABLE", "").strip('"')
                         components[name] = (*components.get(name, ()), *((program,) if program else ()))
         elif file.kind == "setup_py":
-            for name, module, _, _ in one.entry_points:
-                where = find_entry_point(module, "", paths)
+            for name, module, _, function in one.entry_points:
+                where = find_entry_point(module, function, "", paths)
                 if where:
                     scripts[name] = where
     reached = {where.partition(":")[0] for where in scripts.values()}

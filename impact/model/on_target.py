@@ -654,6 +654,12 @@ class WorkspaceOnTarget:
         return any(each and each.holds and each.version != self.target.find_library(library) for each in answers)
 
     @cache_method
+    def includes_library(self, package: Package, library: str) -> bool:
+        """Whether a package includes a header of a library, by how its paths begin."""
+        roots = include_roots(library)
+        return bool(roots) and any(include.path.startswith(roots) for include in package.linked.includes)
+
+    @cache_method
     def is_included_under_conditions(self, package: Package, library: str) -> bool:
         """Whether a package includes headers of a library only under conditions that may not hold, as where it carries
         a copy of its own beside the platform's."""

@@ -66,7 +66,7 @@ if TYPE_CHECKING:
     from ..facts.extract import ExtractedFacts
     from ..facts.launch.parameter_files import ParameterEntry
     from ..targets.asked_versions import AskedVersions
-    from .api import Changes
+    from .api import Changes, Vocabulary
     from .cpp.own_classes import LeftOut, OwnClasses
     from .cpp.resolver import KnownFile
     from .discovery import PackagePlace
@@ -392,7 +392,7 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     interpreted: tuple[str, ...] = ()
     imported_beside: tuple[str, ...] = ()
     source_targets: tuple[tuple[str, tuple[str, ...]], ...] = ()
-    # Declared dependencies that words of launch files, YAML or robot descriptions name.
+    # Declared dependencies and own libraries that words of launch files, YAML or robot descriptions name.
     named: tuple[str, ...] = ()
     # Watched names that the package's own files #define.
     defined: tuple[str, ...] = ()
@@ -634,6 +634,7 @@ class PackageJoin:
         self.setup: tuple[tuple[str, SetupFile], ...] = ()
         self.macros = Macros((), ())
         self.unresolved_receivers = 0
+        self._vocabulary: Vocabulary | None = None
 
     def strip_prefix(self, path: str) -> str:
         return path[len(self.prefix) :]
@@ -1290,14 +1291,37 @@ class PackageJoin:
 
     def list_uses(self, roles) -> Iterator[NameUse]:
         """Every use that some table row is about, in files that something compiles."""
+        members = {label for rows in self.watched.in_cpp.patterns.values() for label, one in rows if one.shows_no_class}
         for path, (role, public, targets, conditions) in roles.items():
             found = self.searched.get(path)
+            words = {one.label for one in found.uses} & members if found is not None else ()
+            strange = self._list_strange_calls(path, words, roles) if words else frozenset()
             for use in found.uses if found is not None else ():
+                if use.label in members and (use.line, use.column) in strange:
+                    continue
                 if use.label.startswith("std::") and self._brings_into_std(path, use.label):
                     continue
                 yield NameUse(use.label, At(path, use.line, use.column), role, public, "cpp",
                               conditions + self.macros.resolve_conditions(use.conditions, targets), targets,
                               f"<{use.types}>".join(_OPEN_TYPES.split(use.label)))  # fmt: skip
+
+    def _list_strange_calls(self, path: str, labels: Collection[str], roles) -> Collection[tuple[int, int]]:
+        """Where a file calls methods that rows with some labels are about, of objects of other classes."""
+        from ..targets.changes import load_uses
+        from .cpp.receivers import Receivers
+        from .cpp.resolver import Resolver
+
+        vocabulary = self._find_vocabulary(roles)
+        if vocabulary is None:
+            return ()
+        patterns = [row for rows in self.watched.in_cpp.patterns.values() for row in rows if row[0] in labels]
+        known = load_uses()
+        of_libraries = {pattern.word for label, pattern in patterns if label not in known or known[label].library}
+        files = (path, *sorted(to for to in self.list_reached(path) if to != path and to in self.cpp))
+        resolver = Resolver([*map(self.load, files), *map(self.load, self.list_offered(path))], vocabulary, None)
+        declared = {dependency.name for dependency in self.manifest.dependencies}
+        receivers = Receivers(resolver, frozenset({*declared, *self.home, self.name}))
+        return receivers.list_strange_calls({pattern.word for _, pattern in patterns}, of_libraries)
 
     def list_errors(self, roles) -> Iterator[NameUse]:
         """The #error lines of files that targets compile."""
@@ -1345,8 +1369,9 @@ class PackageJoin:
         )
 
     def find_named(self, texts: Iterable[str]) -> tuple[str, ...]:
-        """The declared dependencies that stand among the words of files."""
+        """The declared dependencies, and libraries of the package, that stand among the words of files."""
         declared = {dependency.name for dependency in self.manifest.dependencies}
+        declared.update(target.name for target in self.build.targets if target.kind == "library")
         return tuple(sorted({name for text in texts for name in declared.intersection(text.split(" "))}))
 
     def list_python_uses(self, files: dict[str, PythonFile]) -> Iterator[NameUse]:
@@ -1521,19 +1546,14 @@ class PackageJoin:
     def list_cpp_api_uses(self, roles) -> Iterator[CppApiUse]:
         """Uses of C++ names of packages outside of the workspace that are not the same in all versions, in files that
         are compiled."""
-        from .api import ASSIGNING, Vocabulary
+        from .api import ASSIGNING
         from .cpp.resolver import Resolver
         from .cpp.uses import ApiUses, collect_bases
 
-        if self.changing is None:
+        vocabulary = self._find_vocabulary(roles)
+        if vocabulary is None:
             return
         spoken = {path: self.list_words(path) for path in self.cpp if path in roles}
-        packages = {i.path.partition("/")[0] for found in self.resolved.values() for to, i in found if to is None}
-        packages.update(dependency.name for dependency in self.manifest.dependencies)
-        packages.update(name.text.partition("::")[0] for facts in self.cpp.values() for name in facts.qualified)
-        packages.update(self.list_packages_of_offered(spoken))
-        ros = self.generation
-        vocabulary = Vocabulary(sorted(packages - {self.name}), self.name, self.changing, ros, self.home)
         assigning = vocabulary.select_wanted(vocabulary.words & ASSIGNING.keys())
         exported = {name.removeprefix("::") for facts in self.cpp.values() for name in facts.exports}
         # Of classes that are not exported, those count of which objects are made and whose base is named beside them.
@@ -1580,6 +1600,19 @@ class PackageJoin:
                                     At(path, line, column), role, found.sure, found.through,
                                     found.templated, conditions + around, targets)  # fmt: skip
             self.unresolved_receivers += len(uses.unresolved)
+
+    def _find_vocabulary(self, roles) -> Vocabulary | None:
+        """The names of other packages that its files can mean; None where no versions are known."""
+        from .api import Vocabulary
+
+        if self._vocabulary is None and self.changing is not None:
+            packages = {i.path.partition("/")[0] for found in self.resolved.values() for to, i in found if to is None}
+            packages.update(dependency.name for dependency in self.manifest.dependencies)
+            packages.update(name.text.partition("::")[0] for facts in self.cpp.values() for name in facts.qualified)
+            packages.update(self.list_packages_of_offered(path for path in self.cpp if path in roles))
+            packages.discard(self.name)
+            self._vocabulary = Vocabulary(sorted(packages), self.name, self.changing, self.generation, self.home)
+        return self._vocabulary
 
     @cache_method
     def load(self, path: str) -> KnownFile:

@@ -276,9 +276,16 @@ class Workspace:
     @cached_property
     def rooted_headers(self) -> dict[str, list[str]]:
         """Include paths as they follow an `include` folder, and again after a folder named as the package (the layout
-        of ROS 2), to the packages that have them."""
+        of ROS 2), or a folder of the sources that the package exports, to the packages that have them."""
+        folders = {
+            package.name: [posixpath.join(one.item, "") for one in package.build.exports if one.how == "include_dirs"]
+            for package in self
+        }
 
         def list_spellings(package: Package, path: str) -> Iterator[str]:
+            for folder in folders[package.name]:
+                if path.startswith(folder):
+                    yield path.removesuffix(".in").removeprefix(folder)
             _, root, rest = f"/{path.removesuffix('.in')}".rpartition("/include/")
             if root:
                 yield rest
@@ -287,7 +294,7 @@ class Workspace:
                     yield tail
 
         headers = ((package, path) for package in self for path in package.linked.headers)
-        return _group((each, package.name) for package, path in headers for each in list_spellings(package, path))
+        return _group((each, one.name) for one, path in headers for each in list_spellings(one, path))
 
     @cached_property
     def generated_headers(self) -> dict[str, list[str]]:

@@ -50,6 +50,7 @@ class Doubt(enum.Enum):
     LUCKY = "it is there as long as something else that is declared happens to bring it", "warning"
     DISTURBS = "builds and programs go on, and others that use it may not", "warning"
     CHANGED = "it is built and runs, and does something else", "note"
+    ENDED = "the distro has ended: what brings it there stays, and nothing is released into it any more", "note"
     DEPRECATED = "it is there, and produces a warning", "note"
     REPEATED = "a warning says the same of another place already", "note"
 
@@ -74,6 +75,12 @@ def limit_severity(*doubts: Doubt | bool | None) -> str:
 def rate_newest(view: TargetView) -> Doubt:
     """What speaks against an error for what holds only on the newest distro."""
     return Doubt.FAR if any(ahead.platform and ahead.far for ahead in view.horizons) else Doubt.UPCOMING
+
+
+def list_ended_doubts(view: TargetView) -> tuple[Doubt, ...]:
+    """What speaks against more than a note for what only later changes of a distro, or releases into it, would break,
+    on a target whose distro had ended by its day."""
+    return (Doubt.ENDED,) if view.target.has_ended() else ()
 
 
 # Languages whose conditions a file states about itself.

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ...edges.console import describe_unforeseen
-from ...edges.processes import Died, run_forked
+from ...edges.processes import Died, reset_memory, run_forked
 from ..facts.interface import Section
 from ..facts.python import source
 from ..model.flow.graph import Graph
@@ -465,6 +465,7 @@ def _explore_target(
 ) -> Evaluated | Died:
     """What one callback does; runs in a process of its own. What is unforeseen costs this callback alone."""
     target = targets[number]
+    reset_memory()
     try:
         found = _explore(target, messages, modules)
         evaluated = evaluate(found, target.names, parameters=target.parameters)
@@ -491,6 +492,7 @@ def _judge_target(
 ) -> Judged | Died:  # fmt: skip
     """What one callback does with messages; runs in a process of its own. What is unforeseen costs this callback
     alone."""
+    reset_memory()
     try:
         return _judge_request(requests[number], targets, messages, modules)
     except Exception as error:

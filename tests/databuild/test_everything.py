@@ -71,23 +71,33 @@ def test_a_step_is_run_again_when_what_it_reads_changed(sources, tmp_path):
     assert run(sources) == {"commands": "made"}
 
 
-def test_a_step_that_fails_blocks_those_that_read_what_it_makes(sources, tmp_path):
+def test_of_a_step_that_fails_the_tables_stay(sources, tmp_path):
     for folder in ("lists", "cmakes"):
         (tmp_path / folder).mkdir()
     sources.write_text('[lists]\n"debian bookworm" = "lists"\n[cmake]\nmodules = ["cmake/Modules"]\n')
     found = {one.step: one for one in build_everything(sources, tmp_path / "data", tmp_path / "work")}
     assert {name: one.outcome for name, one in found.items() if one.outcome != "left"} == {
-        "providers": "failed", "apt": "blocked", "archive": "blocked", "sonames": "failed", "find-modules": "made",
+        "providers": "failed", "apt": "failed", "archive": "failed", "sonames": "failed", "find-modules": "made",
     }  # fmt: skip
     assert "no Contents or no Packages index" in " ".join(found["providers"].said)
-    assert found["apt"].said == ("`providers` failed",)
+    assert (tmp_path / "data/providers.sqlite.zst").read_bytes() == (DATA / "providers.sqlite.zst").read_bytes()
     assert (tmp_path / "work/logs/providers.txt").stat().st_size
+
+
+def test_steps_whose_sources_are_not_there_are_skipped(sources, tmp_path):
+    sources.write_text('clones = "nowhere"\n[lists]\n"debian sid" = "none"\n[cmake]\nmodules = ["cmake/Modules"]\n')
+    found = {one.step: one for one in build_everything(sources, tmp_path / "data", tmp_path / "work")}
+    assert found["find-modules"].outcome == "made"
+    assert {found[name].outcome for name in ("conda", "surfaces", "sonames", "apt")} == {"unreached"}
+    assert found["conda"].said == (f"{tmp_path / 'nowhere'} is not there",)
+    assert set(found["providers"].said) == {f"{tmp_path / name} is not there" for name in ("none", "nowhere")}
+    assert found["snapshot"].outcome == "left"
+    assert (tmp_path / "data/conda.json.zst").read_bytes() == (DATA / "conda.json.zst").read_bytes()
 
 
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ('clones = "nowhere"', "sources.toml: nowhere: not there; correct the path, or leave it out"),
         ('clonse = "."', "unknown field `clonse`"),
         ("clones = [", "sources.toml:1: "),
         ("gcc = 13", "Expected `object`"),

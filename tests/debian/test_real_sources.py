@@ -38,7 +38,7 @@ READ = {
         8,
         """
         warning misspelt-cmake-variable depth_image_proc  depth_image_proc/CMakeLists.txt             BOOST_INCLUDE_DIRS
-        warning uninstalled-script depth_image_proc  depth_image_proc/script/update_frame_id.py  update_frame_id.py
+        note    uninstalled-script depth_image_proc  depth_image_proc/script/update_frame_id.py  update_frame_id.py
         """,
     ),
 }

@@ -25,7 +25,7 @@ BREAKS = {
         error   removed-header     src/gantry_control/include/gantry_control/axis.h  boost/signal.hpp  laptop
         error   removed-symbol     src/gantry_control/include/gantry_control/axis.h  boost::signal  laptop
         error   cmake-version      src/gantry_control/CMakeLists.txt  3.13  robot,old
-        warning uninstalled-file   src/gantry_vision/CMakeLists.txt  launch  robot,laptop,old
+        note    uninstalled-file   src/gantry_vision/CMakeLists.txt  launch  robot,laptop,old
         """,
 }
 

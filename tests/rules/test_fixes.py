@@ -241,7 +241,7 @@ EDITED = {
         ("  )\r\n", "  )\r\n  add_dependencies(melt ${ice_EXPORTED_TARGETS})\r\n"),
     ),
     "a run dependency in the words of format 1": (
-        ("noetic",),
+        ("noetic@2024-06-01",),
         {"CMakeLists.txt": BARE + "catkin_install_python(PROGRAMS scripts/melt DESTINATION lib)\n",
          "scripts/melt": "#!/usr/bin/env python3\nimport rospy\nimport serial\n\nprint(rospy, serial)\n",
          "package.xml": MANIFEST.format(version=1, tool="catkin", body="  <run_depend>rospy</run_depend>\n")},

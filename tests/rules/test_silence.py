@@ -291,7 +291,7 @@ SILENT = {
     ),
     "modules that the package's own virtual environment may hold": Silent(
         "undeclared-package",
-        ("noetic",),
+        ("noetic@2024-06-01",),
         catkin(
             "catkin_virtualenv rospy",
             "catkin_generate_virtualenv(PYTHON_INTERPRETER python3)\n"

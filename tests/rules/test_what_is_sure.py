@@ -155,7 +155,7 @@ def test_an_installed_header_that_only_another_header_includes(name, first, expe
 @pytest.mark.parametrize("opened", ["sled", "snow"])
 def test_a_package_of_data_that_installs_none_of_it_works_in_the_devel_space(opened, tmp_path):
     launch = f'<launch><include file="$(find {opened})/launch/drive.launch" /></launch>\n'
-    told = severities(tmp_path, "missing-install", "install", "noetic", launch__sled_DOT_launch=launch)
+    told = severities(tmp_path, "missing-install", "install", "noetic@2024-06-01", launch__sled_DOT_launch=launch)
     assert told == {"warning"}
 
 

@@ -123,7 +123,7 @@ ROWS = {
     ),
     "a library that CMake asks for by name and a package uses for itself": Row(
         "undeclared-package",
-        "melodic",
+        "melodic@2022-06-01",
         {
             **catkin("eyes", "", "catkin_package()\nadd_library(eyes eyes.cpp)", "build_depend:libopencv-dev",
                      "exec_depend:libopencv-dev", eyes_cpp="int eyes;\n"),
@@ -134,7 +134,7 @@ ROWS = {
     ),
     "the tool of the package's own build": Row(
         "undeclared-package",
-        "melodic",
+        "melodic@2022-06-01",
         catkin("sled", "", "catkin_package()", "exec_depend:roscpp"),
         ("sled/package.xml", "<buildtool_depend>catkin</buildtool_depend>", ""),
         ("warning", "catkin"),
@@ -184,14 +184,14 @@ ROWS = {
     ),
     "a node started under an argument that is off": Row(
         "undeclared-package",
-        "noetic",
+        "noetic@2024-06-01",
         {**catkin("sled", "", "catkin_package()"), "sled/launch/run.launch": LAUNCH},
         ("sled/launch/run.launch", 'default="false"', 'default="true"'),
         ("warning", "rosbridge_server"),
     ),
     "a package of others, started on demand": Row(
         "undeclared-package",
-        "noetic",
+        "noetic@2024-06-01",
         {
             **catkin("sled", "", "catkin_package()"),
             **catkin("dogs", "", "catkin_package()"),
@@ -397,7 +397,7 @@ ROWS = {
     ),
     "a program that a launch file starts on demand": Row(
         "missing-install",
-        "noetic",
+        "noetic@2024-06-01",
         catkin(
             "sled",
             "",
@@ -700,9 +700,9 @@ def test_what_a_dependency_brings_in_another_distro_is_no_error(said: Said):
     source = "#include <image_transport/image_transport.h>\n" + MAIN
     built = "catkin_package()\nadd_executable(run run.cpp)"
     files = catkin("sled", "", built, "roscpp", "movie_publisher", run_cpp=source)
-    assert said(files, "indigo", "undeclared-package") == [("warning", "image_transport")]
+    assert said(files, "indigo@2018-06-01", "undeclared-package") == [("warning", "image_transport")]
     sure = {path: text.replace("<depend>movie_publisher</depend>", "") for path, text in files.items()}
-    assert said(sure, "indigo", "undeclared-package") == [("error", "image_transport")]
+    assert said(sure, "indigo@2018-06-01", "undeclared-package") == [("error", "image_transport")]
 
 
 @pytest.mark.parametrize(("rule", "target", "files"), SILENT.values(), ids=SILENT)

@@ -420,7 +420,8 @@ def test_rosdep_says_nothing_of_systems_that_it_does_not_know(platform, expected
 
 @pytest.mark.parametrize(
     ("text", "platform", "library", "version"),
-    [("humble@2024-10-01", "conda-forge", "boost", "1.84"), ("humble@2022-10-01", "conda-forge", "boost", "1.74.0"),
+    [("humble@2026-03-06", "robostack", "asio", "1.36.0"), ("jazzy@2026-06-19", "robostack", "boost", "1.90.0"),
+     ("humble@2024-10-01", "conda-forge", "boost", "1.84.0"), ("humble@2022-10-01", "conda-forge", "boost", "1.74.0"),
      ("jazzy@2026-02-01", "robostack", "fmt", "12.1.0"), ("jazzy@2025-08-01", "robostack", "cmake", "3.31.6"),
      ("jazzy@2025-08-01", "conda", "cmake", "4.0.3"), ("humble@2025-08-01", "conda-forge", "python", None),
      ("jazzy@2025-08-01", "conda-forge", "no-such-library", None),

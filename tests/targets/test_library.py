@@ -102,3 +102,21 @@ def test_a_spelling_to_which_a_version_does_not_answer(distro, name, version):
 def test_conda_builds_libraries_that_the_distro_releases_too(platform, request_, holds):
     answer = check_version(DistroTarget("jazzy", "2026-06-19", platform), "octomap", request_, False)
     assert (answer and answer.holds) is holds
+
+
+@pytest.mark.parametrize(
+    ("package", "request_", "exact", "holds"),
+    [
+        ("PythonLibs", "3.10", True, False),
+        ("PythonLibs", "3.10", False, True),
+        ("PythonLibs", "2.7", False, None),
+        ("PythonInterp", "3.13", False, False),
+        ("spdlog", "1.9", False, True),
+        ("spdlog", "0.16", False, False),
+        ("urdfdom_headers", "1.0.6", False, False),
+        ("urdfdom_headers", "2.0", False, True),
+    ],
+)
+def test_versions_that_configurations_accept(package, request_, exact, holds):
+    answer = check_version(DistroTarget("humble", "2026-03-20", "robostack"), package, request_, exact)
+    assert (answer and answer.holds) is holds

@@ -149,9 +149,7 @@ _BEFORE_VARIABLE = re.compile(r"[ \t]*(?:(?:static|const|mutable)[ \t]+)*(?:([^\
 _TAIL = re.compile(r"::\s*([^\W\d]\w*)((?:\s*::\s*[^\W\d]\w*)*)")
 _SIMPLE_NAME = re.compile(r"([^\W\d]\w*)(?:::[^\W\d]\w*)+")
 _HEAD_BACKWARDS = re.compile(r"\s*(\w*[^\W\d])(?!\w)")
-_USING = re.compile(
-    r"using\s+(?:(namespace)\s+|typename\s+)?(?:::\s*)?([^\W\d]\w*(?:\s*::\s*[^\W\d]\w*)*)\s*;"
-)
+_USING = re.compile(r"using\s+(?:(namespace)\s+|typename\s+)?(?:::\s*)?([^\W\d]\w*(?:\s*::\s*[^\W\d]\w*)*)\s*;")
 _SPACE_NAME = re.compile(r"namespace\s+(\w+)\s*=\s*(?:::\s*)?(\w[\w:\s]{0,300}?)\s{0,20};")
 _EXPORT = re.compile(
     r"(?P<macro>PLUGINLIB_(?:EXPORT|REGISTER|DECLARE)_CLASS(?:_\w+)?|RCLCPP_COMPONENTS_REGISTER_NODE(?:_\w+)?"
@@ -410,6 +408,10 @@ def _make_locator(text: str) -> Callable[[int], tuple[int, int]]:
     return locate
 
 
+# What a macro of deprecation is given as its advice, a sentence that it makes a literal of: four words and more.
+_ADVICE = re.compile(r"(?:(?<=DEPRECATED\()|(?<=DEPRECATED_MSG\())\s*[\w:]+(?:[ \t]+[\w:]+){3,}\s*(?=\))")
+
+
 @lru_cache(maxsize=4)
 def scan(data: bytes) -> Scan:
     """Reads a file as far as all that looks into it needs."""
@@ -444,6 +446,8 @@ def scan(data: bytes) -> Scan:
         return " " * len(hidden)
 
     visible = _HIDDEN.sub(blank_match, text)
+    if "DEPRECATED" in visible:
+        visible = _ADVICE.sub(lambda match: _NOT_NEWLINE.sub(make_blanks, match[0]), visible)
 
     directives: list[Directive] = []
     for match in _DIRECTIVE.finditer(visible):

@@ -33,7 +33,8 @@ class ClassBody(msgspec.Struct, eq=False):
 class Body(msgspec.Struct, eq=False):
     """A function while it is read. this: the name by which it knows its object, empty for none. outer: the function
     around it whose variables it sees. outside: names declared global or
-    nonlocal."""
+    nonlocal. bound_methods: of variables what they call, as a path, where each is worth a method of an object and
+    nothing else; empty for the others."""
 
     name: str
     cls: ClassBody | None
@@ -47,6 +48,7 @@ class Body(msgspec.Struct, eq=False):
     locals: set[str] = set()
     outside: dict[str, type] = {}
     functions: set[str] = set()
+    bound_methods: dict[str, str] = {}
     captured: set[str] = set()
     guards: list[Guard] = []
     calls: list[FlowCall] = []

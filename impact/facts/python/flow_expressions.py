@@ -67,6 +67,8 @@ class Expressions(SourceText):
         self.class_bodies: dict[str, ClassBody] = {}
         # Names that a class's own body knows without its object.
         self.own: set[str] = set()
+        # The call on whose result what was read last is asked.
+        self.called: FlowExpr | None = None
         self.constants: list[DataMember] = []
         # Functions whose bodies are still to be read, since they see all variables of the one they stand in.
         self.waiting: list[tuple[Body, list[ast.stmt]]] = []
@@ -103,6 +105,24 @@ class Expressions(SourceText):
     def count_notes(self) -> int:
         """How much was noted of the function up to here."""
         return len(self.calls) + len(self.accesses) + len(self.assignments)
+
+    def note_bound_method(self, name: str, value: FlowExpr, operator: str) -> None:
+        """Notes what a variable of the function calls that is worth a method of an object and nothing else:
+        `declare = self.declare_parameter`."""
+        is_method = value.kind in ("name", "function") and operator == "=" and name not in self.locals
+        self.body.bound_methods[name] = value.text if is_method and "." in value.text else ""
+
+    def find_bound_method(self, name: str) -> str:
+        """What a variable of the function, or of one around it, calls, as note_bound_method() has it; empty where it is
+        no method, or not one alone."""
+        body = self.body
+        while body is not None and name not in body.locals:
+            body = body.outer
+        method = body.bound_methods.get(name, "") if body is not None else ""
+        receiver = method.rpartition(".")[0]
+        if receiver and self.knows(receiver.partition(".")[0]):
+            self.touch(receiver, "pass")
+        return method
 
     def is_function(self, name: str) -> bool:
         body = self.body
@@ -182,7 +202,7 @@ class Expressions(SourceText):
 
     def reach(self, node) -> tuple[str, bool]:
         """The path that an expression names and whether it begins at a variable of the function; what stands inside it,
-        such as an index or a call, is visited."""
+        such as an index or a call, is visited. `called` is then the call that the path begins with, None for none."""
         parts: list[str] = []
         while True:
             cls = node.__class__
@@ -209,10 +229,14 @@ class Expressions(SourceText):
             elif head in self.own:
                 head = "this." + head
         elif cls is ast.Call:
-            head = self.call(node)[0] + "()"
+            callee, given = self.call(node)
+            head = callee + "()"
+            self.called = FlowExpr("call", callee, given, self.called)
+            return ".".join((head, *reversed(parts))), False
         else:
             self.visit(node)
             head = "()"
+        self.called = None
         if not parts:
             return head, local
         parts.append(head)
@@ -244,7 +268,8 @@ class Expressions(SourceText):
             if head == "this":
                 return self.make_member(path, name)
             known = self.class_bodies.get(head)
-            return FlowExpr("function" if known is not None and name in known.callbacks else "name", path)
+            kind = "function" if known is not None and name in known.callbacks else "name"
+            return FlowExpr(kind, path, (), self.called)
         if cls is ast.Call:
             return self.walk_call(node, target)
         maker = _VALUES.get(cls)
@@ -458,6 +483,7 @@ class Expressions(SourceText):
                 path = "this." + name
             else:
                 path = name
+                self.note_bound_method(name, value, operator)
                 if not body.name:
                     self.constants.append(DataMember(name, type, line, value))
                     self.locals.add(name)
@@ -624,16 +650,20 @@ class Expressions(SourceText):
         literal = func.value if func.__class__ is ast.Attribute else None  # type: ignore[attr-defined]
         # `"/".join(names)`
         told = literal.__class__ is ast.Constant and literal.value.__class__ is str  # type: ignore[union-attr]
-        return FlowExpr("call", callee, arguments, self.make_constant(literal) if told else None)  # type: ignore[arg-type]
+        receiver = self.make_constant(literal) if told else self.called  # type: ignore[arg-type]
+        return FlowExpr("call", callee, arguments, receiver)
 
     def call(self, node: ast.Call, target: str = "") -> tuple[str, tuple[FlowExpr, ...]]:
-        """Records a call, with what it is given and what it is called on; gives its callee and arguments."""
+        """Records a call, with what it is given and what it is called on; gives its callee and arguments. `called` is
+        then the call that it is called on what it gives, None for none."""
         func = node.func
         cls = func.__class__
         line = node.lineno
         reading, keeping, kept = False, -1, ""
+        called = None
         if cls is ast.Attribute:
             path, local = self.reach(func.value)  # type: ignore[attr-defined]
+            called = self.called
             attribute = func.attr  # type: ignore[attr-defined]
             callee = f"{path}.{attribute}"
             if local:
@@ -647,9 +677,10 @@ class Expressions(SourceText):
                     name = "this." + name
                 else:
                     reading = name in _READING
-            callee = name if name != self.this else "this"
+            callee = self.find_bound_method(name) or (name if name != self.this else "this")
         else:
             callee, _ = self.reach(func)
+            called = self.called
         arguments: list[FlowExpr] = []
         for place, argument in enumerate(node.args):
             inside = argument.__class__
@@ -679,6 +710,7 @@ class Expressions(SourceText):
             self.calls.append(
                 FlowCall(callee, given, line, column, self.guard, "", "" if returned else target, returned)
             )
+        self.called = called
         return callee, given
 
 

@@ -12,7 +12,7 @@ from functools import cached_property
 from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ...facts.flow import FlowCall, FlowExpr, Guard
-from .code import FlowCode, Fn, get_outer, get_tail, is_number
+from .code import FlowCode, Fn, find_parameter, get_outer, get_tail, is_number
 
 # Functions that give argv without what is ROS's; those of C++ put it into their third argument or return it.
 _COPIES = frozenset(
@@ -190,10 +190,17 @@ class CommandLine:
         for value, writer in self._list_parsings(head, fn):
             yield writer, get_outer(value.text)
 
-    def _list_parsings(self, path: str, fn: Fn) -> Iterator[tuple[FlowExpr, Fn]]:
-        """The calls of `parse_args()` whose result a variable keeps, also through a function that returns it."""
-        for writer, each in self.code.list_writes(self.code.identify(path, fn)):
-            value = each.value.parts[0] if each.value.kind == "index" and each.value.parts else each.value
+    def _list_parsings(self, path: str, fn: Fn, depth: int = 0) -> Iterator[tuple[FlowExpr, Fn]]:
+        """The calls of `parse_args()` whose result a variable keeps, also through a function that returns it, another
+        variable, or who gives it for a parameter."""
+        variable = self.code.identify(path, fn)
+        kept = [(each.value, writer) for writer, each in self.code.list_writes(variable)]
+        parameter = find_parameter(fn, path)
+        given = self.code.list_given(fn, parameter[0], path) if parameter is not None else ()
+        for value, writer in (*kept, *given):
+            value = value.parts[0] if value.kind == "index" and value.parts else value
+            if value.kind == "name" and (value.text, writer) != (path, fn) and depth < _DEEPEST:
+                yield from self._list_parsings(value.text, writer, depth + 1)
             if value.kind != "call":
                 continue
             targets = self.code.list_targets(value.text, writer)
@@ -203,7 +210,7 @@ class CommandLine:
                     yield call, place
 
     def _list_options(self, parser: str, fn: Fn) -> Iterator[tuple[tuple[str, ...], dict[str, object]]]:
-        """What `parser.add_argument()` is told, as far as it is literal."""
+        """What `parser.add_argument()` is told, as far as it is literal, or a constant."""
         wanted = self.code.identify(parser, fn)
         for call in fn.facts.calls:
             if get_tail(call.callee) not in ("add_argument", "add_option"):
@@ -213,8 +220,18 @@ class CommandLine:
             names = tuple(a.text for a in call.arguments if a.kind == "text")
             kept = ("dest", "default", "nargs", "action")
             keywords = (a for a in call.arguments if a.kind == "keyword" and a.parts and a.text in kept)
-            values = {keyword.text: _evaluate_literal(keyword.parts[0]) for keyword in keywords}
+            values = {
+                keyword.text: _evaluate_literal(self._find_constant(keyword.parts[0], fn)) for keyword in keywords
+            }
             yield names, {key: value for key, value in values.items() if value is not None}
+
+    def _find_constant(self, value: FlowExpr, fn: Fn) -> FlowExpr:
+        """The value of a constant, where an expression is one that is written once; else the expression."""
+        if value.kind != "name":
+            return value
+        written = self.code.list_writes(self.code.identify(value.text, fn))
+        only = written[0][1] if len(written) == 1 else None
+        return only.value if only is not None and only.guard < 0 and only.operator == "=" else value
 
 
 def list_guards(fn: Fn, guard: int) -> Iterator[Guard]:

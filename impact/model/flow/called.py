@@ -13,7 +13,10 @@ from ...facts.flow import FlowCall, FlowExpr
 from .code import FlowCode, Fn, get_tail
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
+_TEXT = re.compile(r"""'[^']*'|"[^"]*\"""")
 _ITSELF = frozenset(("this", "super", "super()"))
+# What is given to these in Python names a method by a text; other texts do so only where getattr() is given no text.
+_BY_NAME = frozenset(("getattr", "hasattr", "methodcaller", "attrgetter", "invokeMethod", "eval", "exec"))
 
 
 class Mentions(NamedTuple):
@@ -87,13 +90,14 @@ class CalledFunctions:
         sources = [source for source in self.code.sources if source.facts.language == "cpp"]
         values = [one.value for source in sources for one in source.facts.constants]
         values += [one.value for source in sources for cls in source.facts.classes for one in cls.members]
-        return frozenset(word for value in values if value is not None for word in _list_words(value))
+        return frozenset(word for value in values if value is not None for word in _list_words(value, True))
 
     @cache_method
     def _find_mentions(self, fn: Fn) -> Mentions:
         functions: set[Fn] = set()
         names: set[str] = set()
         any_name = False
+        python = fn.source.facts.language == "python"
         for call in fn.facts.calls:
             head, _, last = call.callee.rpartition(".") if "." in call.callee else ("", "", call.callee)
             names.update(_WORD.findall(head))
@@ -103,12 +107,13 @@ class CalledFunctions:
             else:
                 names.update(_WORD.findall(last))
             any_name = any_name or (call.callee == "getattr" and any(one.kind != "text" for one in call.arguments[1:2]))
+            by_name = not python or get_tail(call.callee) in _BY_NAME
             for argument in call.arguments:
-                names.update(_list_words(argument))
+                names.update(_list_words(argument, by_name))
         for each in fn.facts.assignments:
-            names.update(_list_words(each.value))
+            names.update(_list_words(each.value, not python))
         for guard in fn.facts.guards:
-            names.update(_WORD.findall(guard.text))
+            names.update(_WORD.findall(_TEXT.sub("", guard.text) if python else guard.text))
         return Mentions(frozenset(functions), frozenset(names), any_name)
 
     def _is_sure(self, call: FlowCall, head: str, fn: Fn) -> bool:
@@ -121,12 +126,14 @@ class CalledFunctions:
         return bool(written) and all(each.value.kind == "make" for _, each in written)
 
 
-def _list_words(value: FlowExpr) -> Iterator[str]:
-    """The words in the names and texts of an expression, where a call alone is no mention of what it calls."""
+def _list_words(value: FlowExpr, texts: bool) -> Iterator[str]:
+    """The words in the names of an expression, where a call alone is no mention of what it calls. texts: those in texts
+    too."""
     waiting = [value]
     while waiting:
         one = waiting.pop()
-        yield from _WORD.findall(one.text)
+        if texts or one.kind != "text":
+            yield from _WORD.findall(one.text)
         waiting += one.parts
         if one.receiver is not None:
             waiting.append(one.receiver)

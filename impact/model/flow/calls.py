@@ -287,7 +287,8 @@ class Calls:
                 yield base[0], _make_call(FlowType(base[0]), *base, each, "")
                 continue
             for make in _list_nested(value) if value.parts or value.kind == "make" else ():
-                if make.text:
+                # A pointer that is declared alone makes nothing.
+                if make.text and (make.parts or not make.text.endswith("*")):
                     kind = code.resolve_written(make.text, source, scope)
                     yield _find_known_name(kind), _make_call(kind, make.text, make.parts, each, each.target)
             if value.kind == "make" and value.text:
@@ -403,8 +404,14 @@ _NODES = frozenset(("node", "nh", "n", "pnh", "private_nh", "node_handle", "node
 
 
 def _find_known_name(kind: FlowType) -> str:
-    """The name of a type; of a class of the code the whole one, so that it is not taken for another's of that name."""
-    return kind.cls.name if kind.cls is not None and "::" in kind.cls.name else kind.name
+    """The name of a type; of a class of the code the whole one, so that it is not taken for another's of that name: of
+    one in no namespace, that derives from nothing, with `::` before it."""
+    cls = kind.cls
+    if cls is None or cls.source.facts.language != "cpp":
+        return kind.name
+    if "::" in cls.name:
+        return cls.name
+    return kind.name if cls.facts.bases else f"::{cls.name}"
 
 
 def _make_call(

@@ -76,7 +76,7 @@ class Fn:
         self.is_lambda = facts.name.startswith("lambda@", len(facts.name) - len(get_tail(facts.name)))
         self.assigned: dict[str, list[Assignment]] = {}
         # What is declared here hides members of the same name.
-        self.locals = {p.name for p in facts.parameters}
+        self.locals = {p.name.lstrip("*") for p in facts.parameters}
         python = source.facts.language == "python"
         for each in facts.assignments:
             target = each.target
@@ -566,11 +566,18 @@ class FlowCode:
         return {(source.path, cls.name) for source in self.sources for cls in source.facts.classes}
 
     def list_enclosing_chain(self, fn: Fn) -> Iterator[Fn]:
-        """The function, and for a lambda those around it."""
+        """The function, and for a lambda, or a function of Python, those around it whose variables it sees: for a
+        method, those that its class stands in."""
         seen = 0
         while fn is not None and seen < 10:
             yield fn
-            fn, seen = self.find_enclosing(fn), seen + 1  # type: ignore[assignment]
+            fn, seen = self.find_enclosing(fn) or self._find_around_class(fn), seen + 1  # type: ignore[assignment]
+
+    def _find_around_class(self, fn: Fn) -> Fn | None:
+        """The function of Python that the class of a method stands in."""
+        if fn.source.facts.language != "python" or "." not in fn.scope:
+            return None
+        return self.by_name.get((fn.source.path, get_outer(fn.scope)))
 
     # Variables
 
@@ -1141,10 +1148,12 @@ class FlowCode:
             found = self.list_defined(f"{receiver}.{name}", fn.source) if variable.kind == "global" else []
             if found:
                 return found
-            owner = self.find_owner(fn) if name == "__init__" else None
-            named = self.find_class(receiver, fn.source, fn.scope) if owner is not None else None
-            if owner is not None and named is not None and named.key in {one.key for one in self.list_bases(owner)[1:]}:
-                return self.find_method(named, name)
+            named = self.find_class(receiver, fn.source, fn.scope) if variable.kind == "global" else None
+            if named is not None:
+                # As of its objects; but the method of a base is given the object.
+                owner = self.find_owner(fn)
+                inherits = owner is not None and named.key in {one.key for one in self.list_bases(owner)[1:]}
+                return self.find_method(named, name) if not inherits or name == "__init__" else []
         cls = self._find_receiver_class(receiver, fn) if depth == 0 else self._resolve_receiver(receiver, fn, depth)
         return [] if cls is None else [*self.find_method(cls, name), *self.list_overrides(cls, name)]
 
@@ -1346,6 +1355,9 @@ def _find_made(fn: Fn, code: FlowCode) -> Iterator[tuple[str, tuple[FlowExpr, ..
             yield get_outer(call.callee), call.arguments, call.line
         elif fn.source.facts.language == "python" and (last[:1].isupper() or code.is_class(call.callee, fn)):
             yield code.resolve_name(call.callee, fn.source), call.arguments, call.line
+        elif call.callee == "this" and (own := code.find_owner(fn)) and not code.find_method(own, "__call__"):
+            # `cls(...)` in a method of the class.
+            yield own.name, call.arguments, call.line
         elif last == "emplace_back" and call.callee != last and fn.source.facts.language == "cpp":
             # Into a container of objects: of pointers, it is given one.
             written = code.find_written_type(call.callee.rpartition(".")[0], fn)

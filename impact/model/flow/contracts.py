@@ -180,9 +180,7 @@ class FullEntry(NamedTuple):
 class ContractOfNode:
     """A contract beside the endpoints of its node."""
 
-    def __init__(
-        self, contract: Contract, node: Node, made: list[Endpoint], launched: dict[MadeKey, list[str]]
-    ):
+    def __init__(self, contract: Contract, node: Node, made: list[Endpoint], launched: dict[MadeKey, list[str]]):
         self.contract, self.node, self.made, self.launched = contract, node, made, launched
         self.entries = list(self._list_entries())
 

@@ -13,7 +13,10 @@ from .reaching import LOOPS
 from .variable_tests import read_variable_test
 
 SETTING = "setting"
-"""The kind of an expression that stands for the value of a parameter as a launch gives it."""
+"""The kind of an expression that stands for the value of a parameter as a launch gives it. Where it is known otherwise,
+its only part says how."""
+DEFAULT = "default"
+"""The kind of an expression that stands for its only part as the default of a parameter."""
 _DEEPEST = 8
 _MOST = 200
 # Expressions looked at for one list.
@@ -39,7 +42,7 @@ _LONGEST = 118
 # Ends the path of an element at a place that is a variable.
 _ANY = ".[]"
 _BEGIN = re.compile(r"(.+)\.c?begin")
-_COUNTS = re.compile(r"(\w+) (<=?) (\d{1,4})")
+_COUNTS = re.compile(r"(\w+) (<=?) (\d{1,4}|(?:this->)?[A-Za-z_][\w:]*(?:\.size\(\))?)")
 
 
 class ListElement(NamedTuple):
@@ -50,6 +53,13 @@ class ListElement(NamedTuple):
     fn: Fn
     line: int
     only_if: str = ""
+
+
+class KnownCount(NamedTuple):
+    """A number that an expression is, and how it is known."""
+
+    number: int
+    how: str
 
 
 class HeldList(NamedTuple):
@@ -63,7 +73,7 @@ class Elements:
     """The elements of the lists and dictionaries of a body of code. runs: which functions run; find_only: the only
     call through which a function is reached, and find_makers: who in particular gives a constructor its arguments, None
     for any. given: what a launch makes of an expression; find_turn: the only turn of the loop that begins on a line,
-    None for any."""
+    None for any; count: the only number that an expression may be, None where that is not known."""
 
     def __init__(
         self, code: FlowCode, runs: Callable[[Fn], bool] = lambda fn: True,
@@ -71,9 +81,10 @@ class Elements:
         find_makers: Callable[[Fn], Sequence[Made] | None] = lambda fn: None,
         given: Callable[[FlowExpr, Fn, int], list[ListElement] | None] = lambda value, fn, line: None,
         find_turn: Callable[[Fn, int], int | None] = lambda fn, line: None,
+        count: Callable[[FlowExpr, Fn, int], KnownCount | None] = lambda value, fn, line: None,
     ):  # fmt: skip
         self.code, self._runs, self._find_only, self._find_makers = code, runs, find_only, find_makers
-        self._find_given, self._find_turn = given, find_turn
+        self._find_given, self._find_turn, self._count = given, find_turn, count
         self._left = 0
 
     def list_walked(self, container: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
@@ -86,6 +97,22 @@ class Elements:
         """What a loop goes through in its turns, one in each. None where that is not written out in one place."""
         held = self._find_held(container, fn, line)
         return list(held[0].elements) if held and len(held) == 1 and held[0].whole else None
+
+    def list_in_order(self, container: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
+        """The elements of a list in the order in which they are written; None where that is not known."""
+        return self.list_turns(container, fn, line) if self._is_in_order(container, fn) else None
+
+    def _is_in_order(self, value: FlowExpr, fn: Fn, depth: int = 0) -> bool:
+        """Whether a list is written as such, or as several one after the other: nothing sorts it."""
+        if value.kind == "join" and value.text == "+":
+            return all(self._is_in_order(part, fn, depth) for part in value.parts)
+        if value.kind != "name" or depth > _DEEPEST:
+            return value.kind == "list"
+        variable = self.code.identify(value.text, fn)
+        if variable.kind == "local" and find_parameter(fn, f"*{variable.name}") is not None:
+            return True
+        written = self.code.list_writes(variable)
+        return bool(written) and all(self._is_in_order(each.value, writer, depth + 1) for writer, each in written)
 
     def _take_turn(self, held: list[HeldList], fn: Fn, line: int) -> list[ListElement]:
         """Of the elements of lists those that the loop which begins on a line goes through: that of its turn alone,
@@ -121,9 +148,30 @@ class Elements:
                 same = [one for one in fn.assigned[path] if one.guard == place]
                 steps = [one.value.text for one in same if one.operator == "+="]
                 if guard.kind == "while" and guard.line == each.line and limit and limit[1] == path and steps == ["1"]:
-                    last = int(limit[3]) + (limit[2] == "<=")
-                    return _list_numbers(range(int(each.value.text), last), fn, line) if len(same) == 1 else []
+                    text = limit[3].replace("->", ".")
+                    kind = "number" if text.isdecimal() else "call" if text.endswith("()") else "name"
+                    most = self._find_count(FlowExpr(kind, text.removesuffix("()")), fn, each.line)
+                    if len(same) != 1 or most is None:
+                        return []
+                    last = most.number + (limit[2] == "<=")
+                    return _list_numbers(range(int(each.value.text), last), fn, line, most.how)
         return []
+
+    def _find_count(self, value: FlowExpr, fn: Fn, line: int) -> KnownCount | None:
+        """The number that a limit of a loop is."""
+        if value.kind == "number":
+            return KnownCount(int(value.text), "literal") if is_number(value.text) else None
+        return self._count(value, fn, line)
+
+    def _make_range(self, value: FlowExpr, fn: Fn, line: int) -> list[HeldList] | None:
+        """The numbers that `range` counts, where its limits are known."""
+        limits = [self._find_count(part, fn, line) for part in value.parts]
+        known = [one for one in limits if one is not None]
+        if not 0 < len(limits) < 3 or len(known) < len(limits):
+            return None
+        how = next((one.how for one in known if one.how != "literal"), "literal")
+        found = _list_numbers(range(*(one.number for one in known)), fn, line, how)
+        return [HeldList(tuple(found))] if found else None
 
     def find_pair(self, path: str, fn: Fn, line: int) -> list[ListElement] | None:
         """What `entry.first` and `entry.second` are, where a loop walks through pairs. None for all else."""
@@ -150,8 +198,11 @@ class Elements:
         return [one.elements[place] for one in held]
 
     def _find_held(self, value: FlowExpr, fn: Fn, line: int) -> list[HeldList] | None:
-        self._left = _MOST_STEPS
-        return self._list_held(value, fn, line, 0)
+        before, self._left = self._left, _MOST_STEPS
+        try:
+            return self._list_held(value, fn, line, 0)
+        finally:
+            self._left = before
 
     def _list_held(self, value: FlowExpr, fn: Fn, line: int, depth: int) -> list[HeldList] | None:
         """The lists that an expression may be, None where one of them is not written out."""
@@ -233,7 +284,7 @@ class Elements:
             held = self._list_held(value.receiver or called or FlowExpr("name", head), fn, line, depth + 1)
             return _select_column(held, _OF_DICTIONARIES[last]) if held and last in _OF_DICTIONARIES else held
         if python and not head and value.text == "range":
-            return _make_range(value, fn, line)
+            return self._make_range(value, fn, line)
         if python and not head and value.text in _COPIES and len(value.parts) == 1:
             return self._list_held(value.parts[0], fn, line, depth + 1)
         targets = self.code.list_targets(value.text, fn)
@@ -291,6 +342,9 @@ class Elements:
             if inner is None:
                 return None
             found += inner
+        starred = self._list_starred(variable, fn) if not found else None
+        if starred is not None:
+            found.append(starred)
         for one in self._list_given(variable, fn) if not found else ():
             inner = self._list_held(one.value, one.fn, one.line, depth + 1)
             if inner is None:
@@ -332,6 +386,20 @@ class Elements:
                 if constant.value is not None:
                     yield ListElement(constant.value, self.code.find_first(source, fn), constant.line)
 
+    def _list_starred(self, variable: Variable, fn: Fn) -> HeldList | None:
+        """What the only call of a function of Python gives for `*names`; None for all else."""
+        place = find_parameter(fn, f"*{variable.name}") if variable.kind == "local" else None
+        only = self._find_only(fn)
+        called = [(giver, call) for giver, call in self.code.callers.get(fn, ()) if only is None or call is only]
+        called = [(giver, call) for giver, call in called if self._runs(giver)]
+        if place is None or len(called) != 1:
+            return None
+        giver, call = called[0]
+        if any(one.kind == "keyword" and one.text in ("*", "**") for one in call.arguments):
+            return None
+        positional = [one for one in call.arguments if one.kind != "keyword"]
+        return HeldList(tuple(ListElement(one, giver, call.line) for one in positional[place[0] :]))
+
     def _list_given(self, variable: Variable, fn: Fn) -> Iterator[ListElement]:
         """What callers that run give for a parameter of a function, and its default where one of them gives nothing."""
         place = find_parameter(fn, variable.name) if variable.kind == "local" else None
@@ -350,6 +418,12 @@ class Elements:
                 yield ListElement(given, giver, line)
             elif default is not None and self._runs(giver):
                 yield ListElement(default, fn, fn.facts.line)
+
+
+def is_changed(path: str, fn: Fn) -> bool:
+    """Whether a function changes what a list holds, other than by an assignment."""
+    heads = (call.callee.rpartition(".") for call in fn.facts.calls)
+    return any(head == path and last in _PUT | _CHANGES for head, _, last in heads)
 
 
 def find_begun(value: FlowExpr) -> FlowExpr | None:
@@ -435,14 +509,8 @@ def _select_one(held: HeldList, key: FlowExpr) -> ListElement | None:
     return None
 
 
-def _make_range(value: FlowExpr, fn: Fn, line: int) -> list[HeldList] | None:
-    """The numbers that `range` counts, where its limits are written."""
-    if not 0 < len(value.parts) < 3 or any(part.kind != "number" or not is_number(part.text) for part in value.parts):
-        return None
-    found = _list_numbers(range(*(int(part.text) for part in value.parts)), fn, line)
-    return [HeldList(tuple(found))] if found else None
-
-
-def _list_numbers(numbers: range, fn: Fn, line: int) -> list[ListElement]:
-    """Numbers as they would be written; none where they are many."""
-    return [ListElement(FlowExpr("number", str(each)), fn, line) for each in numbers if len(numbers) <= _MOST]
+def _list_numbers(numbers: range, fn: Fn, line: int, how: str) -> list[ListElement]:
+    """Numbers as they would be written; none where they are many. how: it is known how far they count."""
+    told = () if how == "launch" else (FlowExpr("text", how),)
+    made = (FlowExpr("number", str(n)) if how == "literal" else FlowExpr(SETTING, str(n), told) for n in numbers)
+    return [ListElement(one, fn, line) for one in made] if len(numbers) <= _MOST else []

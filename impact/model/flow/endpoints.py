@@ -32,6 +32,7 @@ from .types import find_header_interface, find_interface, parse_flow_type
 from .values import (
     LOST,
     NOT_PASSED,
+    NOT_YET,
     WHICH_TURN,
     FlowValue,
     FlowValues,
@@ -42,7 +43,6 @@ from .values import (
 )
 
 _EMPTY = "the name is empty"
-_NOT_YET = frozenset(("", "None", "nullptr"))
 _CONNECTS = ("connectInput", "reset")
 _PUTS = frozenset(("push_back", "emplace_back", "emplace", "insert", "append", "make_pair", "reset"))
 _ROLES: dict[str, Role] = {role: role for role in get_args(Role)}
@@ -178,6 +178,27 @@ def _select_lost(names: Sequence[FlowValue]) -> list[FlowValue]:
         return []
     passed = (one for one in names if one.reason != _EMPTY and not one.reason.endswith(NOT_PASSED))
     return [one for one in passed if not one.uncalled and not one.unpassed]
+
+
+def _list_held_paths(value: FlowExpr) -> Iterator[str]:
+    """The variables of which an expression is the value, an element, or a part of an element: `pub`, `pubs[i]`,
+    `pubs.items()`, and each of `(a, b)` that a loop walks through. A call that gives something else ends in `()`."""
+    keys: list[FlowExpr] = []
+    while value.kind == "index" and value.parts:
+        keys.append(value.parts[-1])
+        value = value.parts[0]
+    rows = [value]
+    for key in reversed(keys):
+        if any(row.kind != "list" for row in rows):
+            break
+        place = int(key.text) if key.kind == "number" and is_number(key.text) else None
+        rows = [each for row in rows for each in (row.parts if place is None else row.parts[place : place + 1])]
+    for row in rows:
+        if row.kind == "name" and row.text:
+            yield row.text
+        elif row.kind == "call" and row.text:
+            inner = get_tail(row.text) in ("at", "value", "get", "items", "values", "copy") and get_outer(row.text)
+            yield inner or f"{row.text}()"
 
 
 class Sites:
@@ -346,7 +367,7 @@ class Sites:
         found = join_opposites(values.evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line))
         # What is empty, or nothing, was not given yet.
         empty = (FlowValue(None, "unresolved", _EMPTY),)
-        return tuple(one for one in found if one.text not in _NOT_YET) or empty
+        return tuple(one for one in found if one.text not in NOT_YET) or empty
 
     @staticmethod
     def _join_spaces(spaces: list[FlowValue], names: tuple[FlowValue, ...]) -> tuple[FlowValue, ...]:
@@ -529,12 +550,14 @@ class Sites:
 
     def _resolve_in_namespaces(self, name: str, fn: Fn) -> str:
         """A type's interface by `using namespace sensor_msgs` and `using namespace std_msgs::msg`."""
-        if fn.source.facts.language != "cpp" or ("::" in name and not name.startswith("msg::")):
+        bare = name.removesuffix("::Request").removesuffix("::Response")
+        if fn.source.facts.language != "cpp" or ("::" in bare and not bare.startswith("msg::")):
             return ""
         found: list[str] = []
         for alias in self.code.aliases[fn.source.path].get("*", ()):
-            known = find_interface(f"{alias.target}::{name}")
-            if known and alias.target.endswith(("::msg", "::srv", "::action", "_msgs", "_srvs")):
+            known = find_interface(f"{alias.target}::{bare}", lower=True)
+            named = alias.target.endswith(("::msg", "::srv", "::action", "_msgs", "_srvs")) and bare[:1].isupper()
+            if known and (named or self.defined.has(known)):
                 found.append(known)
         if len(found) > 1:
             included = {find_header_interface(header) for header in fn.source.facts.includes}
@@ -991,22 +1014,38 @@ class Sites:
                     if part.kind == "name":
                         yield from self.list_publishers(part.text, writer, depth + 1)
         for writer, each in code.list_writes(variable):
-            if each.value.kind in ("name", "index", "call") and each.operator in ("=", "for"):
-                text = each.value.text
-                if each.value.kind == "index":
-                    text = unparse(each.value.parts[0]) if each.value.parts else ""
-                elif each.value.kind == "call":
-                    text = get_outer(text) if get_tail(text) in ("at", "value", "get") else f"{text}()"
-                if text and text != receiver:
-                    yield from self.list_publishers(text, writer, depth + 1)
+            if each.operator in ("=", "for"):
+                for text in _list_held_paths(each.value):
+                    if text != receiver:
+                        yield from self.list_publishers(text, writer, depth + 1)
+        for writer, value in self._list_put(variable):
+            yield from self.list_publishers(value.text, writer, depth + 1)
         if variable.kind == "local":
             for one in code.list_enclosing_chain(fn):
                 place = find_parameter(one, variable.name)
                 if place is None:
                     continue
-                for value, giver in code.list_given(one, place[0], variable.name):
-                    if value.kind == "name":
-                        yield from self.list_publishers(value.text, giver, depth + 1)
+                given = list(code.list_given(one, place[0], variable.name))
+                around = code.find_enclosing(one)
+                # `lambda message, to=publisher: to.publish(message)`
+                if place[1].default is not None and around is not None:
+                    given.append((place[1].default, around))
+                for value, giver in given:
+                    for text in _list_held_paths(value):
+                        yield from self.list_publishers(text, giver, depth + 1)
+
+    def _list_put(self, variable: Variable) -> list[tuple[Fn, FlowExpr]]:
+        """The variables that are put into a container, with the functions that do."""
+        return self._put_by_variable.get(variable, [])
+
+    @cached_property
+    def _put_by_variable(self) -> dict[Variable, list[tuple[Fn, FlowExpr]]]:
+        calls = self.code.list_calls_named(("append", "push_back", "emplace_back"))
+        return group_pairs(
+            (self.code.identify(get_outer(call.callee), fn), (fn, argument))
+            for fn, call in calls if "." in call.callee and "()" not in call.callee
+            for argument in call.arguments if argument.kind == "name"
+        )  # fmt: skip
 
     @cached_property
     def timers(self) -> list[TimerSite]:

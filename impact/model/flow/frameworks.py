@@ -84,7 +84,8 @@ class Frameworks:
         return ""
 
     def list_objects(self, name: str, python: bool = False) -> list[FrameworkRow]:
-        """Rows about objects of a class, by its name as qualified as it is known. python: whether Python makes it."""
+        """Rows about objects of a class, by its name as qualified as it is known; with `::` before it where that is
+        whole. python: whether Python makes it."""
         return [
             row
             for row in self.objects.get(get_last_part(name), ())
@@ -98,6 +99,8 @@ def get_last_part(name: str) -> str:
 
 
 def _is_ending(full: str, name: str) -> bool:
+    if name.startswith("::"):
+        return full == name.removeprefix("::")
     one, other = full.replace("::", ".").split("."), name.replace("::", ".").strip(".").split(".")
     return one[-len(other) :] == other or other[-len(one) :] == one
 

@@ -1,4 +1,5 @@
-"""Lists and dictionaries that a launch gives by parameters: names below a prefix, mappings, and lists of mappings."""
+"""Lists and dictionaries that a launch gives by parameters: names below a prefix, mappings, and lists of mappings; and
+lists that are the defaults of parameters."""
 
 from __future__ import annotations
 
@@ -9,10 +10,14 @@ from typing import Any, Protocol
 from ...facts.flow import FlowExpr
 from .calls import Calls, FrameworkCall
 from .code import Fn, Variable, get_tail
-from .elements import SETTING, ListElement
+from .elements import DEFAULT, SETTING, ListElement, is_changed
 from .reaching import FlowValue
 
 _MOST = 200
+# What gives the list that the value of a parameter is.
+_GIVING = frozenset(
+    ("value", "get_parameter_value", "string_array_value", "as_string_array", "get_value", "to_value_msg")
+)
 
 
 class SettingValues(Protocol):
@@ -40,6 +45,15 @@ class SettingValues(Protocol):
         """Whether a launch gives anything."""
         ...
 
+    def find_default(self, use: FrameworkCall) -> tuple[FlowExpr, Fn, int] | None:
+        """The only default of the parameter that a use declares or reads, where no launch sets it, with where it
+        stands."""
+        ...
+
+    def list_turns(self, value: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
+        """What a loop over a list goes through in its turns."""
+        ...
+
 
 class GivenLists:
     """The lists and dictionaries that what a launch sets makes of expressions. values: evaluates them."""
@@ -49,15 +63,44 @@ class GivenLists:
         self._asked: set[tuple[Fn, FlowExpr]] = set()
 
     def find(self, value: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
-        """What an expression holds: a pair for each key of a dictionary. None where no launch gives it."""
-        if (fn, value) in self._asked or not self._values.note_open():
+        """What an expression holds: a pair for each key of a dictionary. None where no launch gives it, and no default
+        of a parameter."""
+        if (fn, value) in self._asked:
             return None
         self._asked.add((fn, value))
         try:
-            found = self._find(value, fn)
+            found = self._find(value, fn) if self._values.note_open() else None
+            return [ListElement(one, fn, line) for one in found] if found else self._list_default(value, fn, line)
         finally:
             self._asked.discard((fn, value))
-        return [ListElement(one, fn, line) for one in found] if found else None
+
+    def _list_default(self, value: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
+        """The elements of the list that is the default of the parameter whose value an expression is."""
+        use = self._find_use(value, fn, line)
+        given = self._values.find_default(use) if use is not None else None
+        held = self._values.list_turns(*given) if given is not None else None
+        return [one._replace(value=FlowExpr(DEFAULT, "", (one.value,))) for one in held] if held else None
+
+    def _find_use(self, value: FlowExpr, fn: Fn, line: int) -> FrameworkCall | None:
+        """The use that gives the value of a parameter, or fills the variable that an expression is."""
+        if value.kind == "name" and value.receiver is None:
+            # What is written otherwise, too, may be something else.
+            variable = self._code.identify(value.text, fn)
+            uses = self._values.list_filling(variable) if value.text.removeprefix("this.").isidentifier() else []
+            values = (each.value for _, each in self._code.list_writes(variable))
+            written = [one for one in values if one.kind != "make" or one.parts]
+            return uses[0] if len(uses) == 1 and not written and not is_changed(value.text, fn) else None
+        while value.receiver is not None and get_tail(value.text) in _GIVING:
+            value = value.receiver
+        if value.kind != "call" or value.receiver is not None:
+            return None
+        same = [one for one in fn.list_calls(value.text) if one.arguments == value.parts]
+        call = min(same, key=lambda one: abs(one.line - line), default=None)
+        use = self._calls.find_use(fn, call) if call is not None else None
+        if use is None or use.row.does != "parameter":
+            return None
+        filled = use.row.variable and self._calls.find_argument(use, use.row.variable) is not None
+        return None if filled else use
 
     def _find(self, value: FlowExpr, fn: Fn) -> list[FlowExpr] | None:
         head, _, last = value.text.rpartition(".")

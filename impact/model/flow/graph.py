@@ -174,6 +174,8 @@ class ParameterUse(msgspec.Struct, frozen=True):
     default: str = ""
 
 
+NOT_GIVEN = "has no default here"
+"""How the reason ends why a name is not known that is the value of a parameter which nothing gives."""
 LOST_INCLUDE = "included launch file"
 """What an include is, as Unresolved has it, that is not followed."""
 

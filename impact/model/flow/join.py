@@ -749,9 +749,13 @@ class Join:
     def _count_foreign(self, owners: _Owners, count: _Count) -> None:
         """Counts calls that look like a framework's, on objects of classes that are not in the code."""
         for use in self.calls.select_uses(FOREIGN):
-            if owners.list_owners(use):
+            if not self.is_of_other_ros(use) and owners.list_owners(use):
                 reason = f"whether it is called on an object of {use.row.framework} is not known"
                 count.call(Unresolved("call", reason, *_get_place(use), use.call.callee), ())
+
+    def is_of_other_ros(self, use: FrameworkCall) -> bool:
+        """Whether a call on an object of a class that is not in the code would be of ROS 1, in a workspace of ROS 2."""
+        return use.row.does == FOREIGN and use.row.framework == "roscpp" and self.ros == 2
 
     def _list_publishes(self, owners: _Owners, count: _Count) -> Iterator[Publish]:
         for statement in self.sites.statements:
@@ -926,9 +930,12 @@ class Join:
         loads = owner.only_if if isinstance(owner, Running) else ""
         condition = "" if site.implied else self._describe_condition(use, owner)
         only_if = _join_conditions(loads, _describe_loading(value, owner), condition, value.only_if, replaced)
+        ran = owner.functions if isinstance(owner, Running) else ()
+        # A class that several nodes use is given the callback of each.
+        callbacks = tuple(fn for fn in site.callbacks if fn in ran) or site.callbacks
         return Endpoint(
             site.role, node.id if node else "", topic, type_, *_get_place(use), site.written, how, qos,
-            _make_callback(site.callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
+            _make_callback(callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
             use.row.framework, only_if, _make_code_name(site, value.text or "") if topic else "",
             self.list_guards(use.fn, use.call.guard),
         )  # fmt: skip
@@ -940,7 +947,45 @@ class Join:
         guards = self.list_guards(use.fn, use.call.guard)
         texts = [guard.text for guard in guards if guard.kind == "cpp"]
         texts += [f"something runs {guard.text}" for guard in guards if guard.kind == "never"]
-        return " && ".join((*texts, *self._list_closed(use, owner)))
+        closed = tuple(self._list_closed(use.fn, use.call.guard, owner)) or (self._describe_made(use.fn, owner, ()),)
+        return " && ".join(filter(None, (*texts, *closed)))
+
+    def _describe_made(self, fn: Fn, owner: Owner, seen: tuple[Fn, ...]) -> str:
+        """The conditions under which alone a node comes to a function: those where the objects of its class are made,
+        or where it is called, if the code alone calls it. Empty where one may hold as far as is known, or where not all
+        is known that leads there. seen: the functions that were asked already."""
+        if fn in seen or len(seen) > _DEEPEST_GIVEN or not isinstance(owner, Running) or fn in owner.program.roots:
+            return ""
+        cls = self.code.find_owner(fn)
+        rows: list[tuple[Fn, int]] = []
+        if cls is not None and not any(self.code.find_owner(root) == cls for root in owner.program.roots):
+            kinds = (cls, *self.code.derived.get(cls.key, ()))
+            made = (row for one in kinds for row in self.code.constructions.get(one.key, ()))
+            rows = [(maker, guard) for maker, _, line in made for guard in maker.collect_guards(line) or (-1,)]
+        found = self._join_closed(rows, owner, (*seen, fn))
+        if not found and self.called.is_called_by_code(fn) and fn not in self._handed_on:
+            rows = [(caller, call.guard) for caller, call in self.code.callers.get(fn, ())]
+            found = self._join_closed(rows, owner, (*seen, fn))
+        return found
+
+    def _join_closed(self, rows: Iterable[tuple[Fn, int]], owner: Running, seen: tuple[Fn, ...]) -> str:
+        """The conditions of places in functions that a node runs, each the one of a guard, where none of them holds as
+        far as is known; empty where one may."""
+        found: dict[str, None] = {}
+        for fn, guard in rows:
+            if fn in owner.functions:
+                closed = " && ".join(self._list_closed(fn, guard, owner)) or self._describe_made(fn, owner, seen)
+                if not closed:
+                    return ""
+                found[closed] = None
+        return " || ".join(found)
+
+    @cached_property
+    def _handed_on(self) -> frozenset[Fn]:
+        """The functions that are given to others, as callbacks are."""
+        given = (fn for site in self.sites.endpoints for fn in site.callbacks)
+        timed = (fn for timer in self.sites.timers for fn in timer.callbacks)
+        return frozenset((*given, *timed, *self.code.bound))
 
     def _is_called(self, fn: Fn, running: Running) -> bool:
         """Whether something that a node runs may call a function."""
@@ -958,12 +1003,12 @@ class Join:
             known = self._called_of[id(running.functions)] = running.functions, called
         return fn in known[1]
 
-    def _list_closed(self, use: FrameworkCall, owner: Owner) -> Iterator[str]:
-        """The conditions around a call that do not hold in a node as far as is known, or of which that is not known
-        though they ask for what a launch gives."""
+    def _list_closed(self, fn: Fn, place: int, owner: Owner) -> Iterator[str]:
+        """The conditions around a place in a function, a guard's, that do not hold in a node as far as is known, or of
+        which that is not known though they ask for what a launch gives."""
         values = owner.limit_values() if isinstance(owner, Running) else self.values
-        for guard, decided in reversed(list(values.decide_guards(use.fn, use.call.guard))):
-            asks_open = decided.asks_open and (guard.kind != "unless" or self._has_other_branch(use.fn, guard))
+        for guard, decided in reversed(list(values.decide_guards(fn, place))):
+            asks_open = decided.asks_open and (guard.kind != "unless" or self._has_other_branch(fn, guard))
             if decided.holds is False or (decided.holds is None and (decided.is_given or asks_open)):
                 yield spell_condition(guard.kind, guard.text)
 

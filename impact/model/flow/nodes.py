@@ -50,10 +50,9 @@ class BuiltPackage(NamedTuple):
     plugins: Mapping[str, str] = {}
 
 
-def find_entry_point(target: str, folder: str, paths: Collection[str]) -> str:
+def find_entry_point(module: str, function: str, folder: str, paths: Collection[str]) -> str:
     """The file and, behind a colon, the function that an entry point of a setup.py in a folder names; empty for a file
     that is not among the paths."""
-    module, _, function = target.partition(":")
     stem = module.strip().replace(".", "/")
     for inside in (f"{stem}.py", f"src/{stem}.py", f"{stem}/__init__.py"):
         path = f"{folder}/{inside}".lstrip("/")

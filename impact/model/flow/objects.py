@@ -7,13 +7,14 @@ from functools import cached_property
 from typing import Any, NamedTuple, TypeVar
 
 from ....edges.groups import group_pairs
-from ...facts.flow import FlowExpr
+from ...facts.flow import Assignment, FlowCall, FlowExpr
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail
 from .contexts import Contexts
 from .graph import Role
 from .names import RemappingRule, join_name, normalise
 from .node_options import GivenPiece, NodeOptions
+from .reaching import LOOPS
 from .types import Cls, FlowType
 from .values import NAMESPACE, FlowValues
 
@@ -275,16 +276,17 @@ class _Trace:
         given = next((one for one in arguments if objects.calls.is_node(one, use.fn)), None)
         around = self._code.find_owner(use.fn)
         for value in (FlowExpr("name", receiver) if receiver else None, given):
-            keys = self._follow(value, use.fn, around, frozenset()) if value is not None else set()
+            keys = self._follow(value, use.fn, around, frozenset(), use.call) if value is not None else set()
             if keys:
                 return keys
         return objects.find_own_key(use.fn)
 
     def _follow(
-        self, value: FlowExpr, fn: Fn, around: Cls | None, seen: frozenset[tuple[Variable, str]]
+        self, value: FlowExpr, fn: Fn, around: Cls | None, seen: frozenset[tuple[Variable, str]],
+        at: FlowCall | Assignment | None = None,
     ) -> set[str]:  # fmt: skip
         """The keys of what an expression is, where it is a node object. around: the class of the object in which it is
-        evaluated."""
+        evaluated. at: the statement of the function that it stands in, None where that is not known."""
         objects, code = self._objects, self._code
         if value.kind == "call" and not value.parts and get_tail(value.text) in _HANDED and "." in value.text:
             value = FlowExpr("name", value.text.rpartition(".")[0])
@@ -293,7 +295,7 @@ class _Trace:
             return objects.find_own_key(fn)
         if value.kind in ("make", "call"):
             wraps = value.parts and get_tail(value.text.partition("<")[0]) in _WRAPS
-            keys = self._follow(value.parts[0], fn, around, seen) if wraps else set()
+            keys = self._follow(value.parts[0], fn, around, seen, at) if wraps else set()
             return keys or objects.find_class_key(code.resolve_type(value, fn), fn)
         if value.kind != "name" or len(seen) > _DEEPEST:
             return set()
@@ -303,11 +305,22 @@ class _Trace:
             return set()
         seen |= {mark}
         keys: set[str] = set()
-        for writer, each in self._select_running(self._select_own(code.list_writes(variable), variable, around)):
+        written = self._select_running(self._select_own(code.list_writes(variable), variable, around))
+        results = self._select_running(code.list_results(variable))
+        own = variable.kind == "member" and text.startswith("this.") and "." not in text.removeprefix("this.")
+        if at is not None and (own or variable.kind == "local"):
+            last = find_last_write(fn, at, [*written, *results])
+            if own:
+                # Another function may have written it before this one has.
+                written = [row for row in written if row[0] is fn or last is None]
+                results = [row for row in results if row[0] is fn or last is None]
+            written = [row for row in written if reaches(row, fn, at, last)]
+            results = [row for row in results if reaches(row, fn, at, last)]
+        for writer, each in written:
             made = make_key(writer, each.line)
             inner = around if variable.kind != "member" else self._find_around(writer, around)
-            keys |= {made} if made in objects.made else self._follow(each.value, writer, inner, seen)
-        for caller, call in self._select_running(code.list_results(variable)):
+            keys |= {made} if made in objects.made else self._follow(each.value, writer, inner, seen, each)
+        for caller, call in results:
             made = make_key(caller, call.line)
             keys |= {made} if made in objects.made else set()
         for one in code.list_enclosing_chain(fn) if variable.kind == "local" and not keys else ():
@@ -358,6 +371,33 @@ class _Trace:
             return rows
         self.rests_on.update(fn for fn, _ in rows)
         return [row for row in rows if row[0] in self._functions] or rows
+
+
+def find_last_write(
+    fn: Fn, at: FlowCall | Assignment, rows: Sequence[tuple[Fn, FlowCall | Assignment]]
+) -> FlowCall | Assignment | None:
+    """Of what writes a variable, that which surely does so last before a statement of a function; None for
+    none."""
+    around = {-1, *fn.list_guards_around(at.guard)}
+    sure = [each for writer, each in rows if writer is fn and each.line < at.line and each.guard in around]
+    return max(sure, key=lambda each: each.line, default=None)
+
+
+def reaches(
+    row: tuple[Fn, FlowCall | Assignment], fn: Fn, at: FlowCall | Assignment, last: FlowCall | Assignment | None
+) -> bool:
+    """Whether what writes a variable may be what a statement of a function meets: nothing surely comes between,
+    also where a loop comes back to it. last: as find_last_write() has it for all that write the variable."""
+    writer, each = row
+    if writer is not fn:
+        return True
+    if last is not None and each.line < last.line:
+        return False
+    if each.line <= at.line:
+        return True
+    kept = fn.list_guards_around(last.guard) if last is not None else ()
+    turns = set(fn.list_guards_around(at.guard)).intersection(fn.list_guards_around(each.guard)).difference(kept)
+    return any(fn.facts.guards[guard].kind in LOOPS for guard in turns)
 
 
 def make_key(fn: Fn, line: int) -> str:

@@ -11,7 +11,7 @@ import msgspec
 
 from ....edges.groups import group_pairs
 from ..launch.result import Launched
-from .graph import LOST_INCLUDE, Graph, Node
+from .graph import LOST_INCLUDE, NOT_GIVEN, Endpoint, Graph, Node, Publish, Unresolved
 from .launches import Launch
 
 _Row = TypeVar("_Row")
@@ -47,11 +47,7 @@ def merge_launches(code: Graph, launches: Sequence[Launch]) -> Graph:
     programs = {start.program for launch in launches for start in launch.starts}
     possible = [(launch.path, launch.possible) for launch in launches if launch.possible is not None]
     programs |= {_get_program(node) for _, graph in possible for node in graph.nodes}
-    started = {
-        node.id
-        for node in code.nodes
-        if node.kind != "library" and _get_program(node) in programs
-    }
+    started = {node.id for node in code.nodes if node.kind != "library" and _get_program(node) in programs}
     sure = [(launch.path, launch.graph) for launch in launches]
     graphs = [graph for _, graph in (*sure, *possible)]
 
@@ -66,19 +62,56 @@ def merge_launches(code: Graph, launches: Sequence[Launch]) -> Graph:
         for node in graph.nodes
     }
     nodes |= {node.id: node for node in code.nodes if node.id not in started}
-    lost = _drop_repeats(
-        one for graph in graphs for one in graph.coverage.unresolved if one.what == LOST_INCLUDE
-    )
+    lost = _drop_repeats(one for graph in graphs for one in graph.coverage.unresolved if one.what == LOST_INCLUDE)
+    endpoints, publishes = _drop_not_given(merge("endpoints"), merge("publishes"))
+    left = _select_unresolved(code.coverage.unresolved, endpoints, publishes)
+    resolved = code.coverage.resolved + len(code.coverage.unresolved) - len(left)
     return msgspec.structs.replace(
         code,
-        coverage=msgspec.structs.replace(code.coverage, unresolved=(*code.coverage.unresolved, *lost)),
+        coverage=msgspec.structs.replace(code.coverage, resolved=resolved, unresolved=(*left, *lost)),
         nodes=tuple(sorted(nodes.values(), key=lambda node: node.id)),
-        endpoints=merge("endpoints"),
-        publishes=merge("publishes"),
+        endpoints=endpoints,
+        publishes=publishes,
         timers=merge("timers"),
         parameters=merge("parameters"),
         outside=_drop_repeats(one for graph in graphs for one in graph.outside),
     )
+
+
+def _drop_not_given(
+    endpoints: tuple[Endpoint, ...], publishes: tuple[Publish, ...]
+) -> tuple[tuple[Endpoint, ...], tuple[Publish, ...]]:
+    """Endpoints and publish statements without those of a node that have no name since one launch file gives it no
+    parameter, where another does: there is none without the name."""
+    given = {(one.node, one.role, one.path, one.line) for one in endpoints if one.how == "launch" and one.topic}
+    left = tuple(
+        one for one in endpoints
+        if one.topic or not one.reason.endswith(NOT_GIVEN) or (one.node, one.role, one.path, one.line) not in given
+    )  # fmt: skip
+    if len(left) == len(endpoints):
+        return endpoints, publishes
+    said = {(one.node, one.path, one.line) for one in publishes if one.topic}
+    return left, tuple(
+        one for one in publishes
+        if one.topic or not one.reason.endswith(NOT_GIVEN) or (one.node, one.path, one.line) not in said
+    )  # fmt: skip
+
+
+def _select_unresolved(
+    unresolved: Sequence[Unresolved], endpoints: Iterable[Endpoint], publishes: Iterable[Publish]
+) -> list[Unresolved]:
+    """Of what is not resolved in the code that which is not resolved either where launch files start it. endpoints,
+    publishes: of what they start."""
+    known: dict[tuple[str, str, int], list[bool]] = {}
+    named: set[tuple[str, str]] = set()
+    for one in endpoints:
+        is_named = bool(one.topic) and one.how not in ("partly", "unresolved")
+        known.setdefault((f"{one.role} name", one.path, one.line), []).append(is_named)
+        if is_named:
+            named.add((one.node, one.topic))
+    for one in publishes:
+        known.setdefault(("publish", one.path, one.line), []).append((one.node, one.topic) in named)
+    return [one for one in unresolved if not all(known.get((one.what, one.path, one.line), (False,)))]
 
 
 def _get_program(node: Node) -> str:

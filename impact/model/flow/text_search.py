@@ -7,11 +7,12 @@ how much that is, package by package, and where.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
 
 from msgspec.structs import replace
 
+from ...facts.flow import FlowExpr
 from .code import Fn, get_tail
 from .frameworks import load_frameworks
 from .graph import Graph, PackageCoverage, Unresolved
@@ -52,6 +53,7 @@ def add_text_coverage(graph: Graph, code: Join, read: Callable[[str], bytes]) ->
         hits = list(_search(text))
         if any((path, line) not in known for line, _ in hits):  # it may be a comment
             hits = list(_search(_blank(text, source.facts.language)))
+        hits += _list_handed_on(functions.get(path, ())) if source.facts.language == "python" else ()
         own = _list_own(code, functions.get(path, ()), {name for _, name in hits}) if hits else set()
         for line, name in hits:
             if (line, name) in own:
@@ -68,11 +70,16 @@ def add_text_coverage(graph: Graph, code: Join, read: Callable[[str], bytes]) ->
 
 
 @cache
-def _compile_search() -> re.Pattern[str]:
+def _list_searched() -> frozenset[str]:
+    """The names of functions that are searched for."""
     calls = load_frameworks().calls
     making = (name for name, rows in calls.items() if any(row.does in _ROLES for row in rows))
-    names = {name for name in making if name.startswith(_STEMS)}
-    listed = "|".join(sorted(map(re.escape, names), key=lambda name: (-len(name), name)))
+    return frozenset(name for name in making if name.startswith(_STEMS))
+
+
+@cache
+def _compile_search() -> re.Pattern[str]:
+    listed = "|".join(sorted(map(re.escape, _list_searched()), key=lambda name: (-len(name), name)))
     return re.compile(rf"({listed})\s*(?:<[^;{{}}()]*>\s*)?\(|(Subscriber)\s*<[^;{{}}()]*>\s*\w*\s*[({{]")
 
 
@@ -96,6 +103,30 @@ def _search(text: str) -> Iterator[tuple[int, str]]:
         yield line, match[1] or match[2]
 
 
+def _list_handed_on(functions: Sequence[Fn]) -> list[tuple[int, str]]:
+    """Where functions of Python hand on a method that is named like a framework's function, and it is not seen that it
+    is called: by line and name."""
+    names, found = _list_searched(), dict[tuple[int, str], None]()
+    for fn in functions:
+        given = [(each.value, each.line) for each in fn.facts.assignments]
+        given += [(one, call.line) for call in fn.facts.calls for one in call.arguments]
+        for value, line in ((part, line) for whole, line in given for part in _list_parts(whole)):
+            name = get_tail(value.text) if value.kind in ("name", "function") and "." in value.text else ""
+            inner = (one for one in functions if one is fn or one.name.startswith(f"{fn.name}."))
+            if name in names and not any(one.list_calls(value.text) for one in inner):
+                found[line, name] = None
+    return list(found)
+
+
+def _list_parts(value: FlowExpr) -> Iterator[FlowExpr]:
+    """An expression, or those that it chooses from, lists or binds."""
+    if value.kind not in ("choice", "list", "keyword", "bind"):
+        yield value
+    else:
+        for part in value.parts:
+            yield from _list_parts(part)
+
+
 def _blank(text: str, language: str) -> str:
     """A text without comments and literals, its lines kept."""
     return (_CPP if language == "cpp" else _PYTHON).sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
@@ -105,7 +136,8 @@ def _list_known(code: Join, graph: Graph) -> set[tuple[str, int]]:
     """The lines of what is in a graph, and of calls that are understood as no part of it."""
     rows = (*graph.endpoints, *graph.timers, *graph.parameters, *graph.coverage.unresolved, *graph.coverage.wrappers)
     found = {(row.path, row.line) for row in rows}
-    found.update((use.fn.source.path, use.call.line) for use in code.calls.uses)
+    uses = (use for use in code.calls.uses if not code.is_of_other_ros(use))
+    found.update((use.fn.source.path, use.call.line) for use in uses)
     return found
 
 

@@ -126,7 +126,7 @@ _KINDS = {"msg": "", "srv": "", "action": ""}
 def find_interface(name: str, lower: bool = False) -> str:
     """`package/Name` of a message, service or action type, by its qualified name in C++ or Python; empty when the name
     does not tell a package. In Python the kind belongs to it: `std_msgs.String` is none. lower: names that begin with a
-    small letter are taken too, which other things have as well.
+    small letter, and packages that begin with a large one, are taken too, which other things have as well.
 
     `std_msgs::msg::String`, `std_msgs::String_<A>`, `std_msgs.msg.String` all give `std_msgs/String`; pointers,
     `::Request`, `::Goal` and `sensor_msgs::ImageConstPtr` are taken off, and modules that Python generates
@@ -152,6 +152,7 @@ def find_interface(name: str, lower: bool = False) -> str:
         del parts[-2]
     if len(parts) >= 3 and parts[-2] in _KINDS:
         return f"{parts[-3]}/{parts[-1]}"
-    if len(parts) == 2 and "::" in kind.name and (lower or parts[1][:1].isupper()) and parts[0][:1].islower():
+    usual = parts[0][:1].islower() and parts[-1][:1].isupper() if parts else False
+    if len(parts) == 2 and "::" in kind.name and (lower or usual):
         return f"{parts[0]}/{parts[1]}"
     return ""

@@ -9,26 +9,27 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from functools import cached_property
 from itertools import islice, product
 from operator import itemgetter
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar, cast
 
 from msgspec import structs
 
 from ....edges.groups import group_pairs
 from ...facts.flow import Assignment, FlowCall, FlowExpr, FlowParameter, Guard
 from ...facts.python.flow_expressions import LONGEST_OTHER, make_join
-from ...facts.python.text import format_pieces
+from ...facts.python.text import format_pieces, split_percent_format
 from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number, select_overloads
 from .conditions import ConditionReader, DecidedCondition, is_truth
-from .elements import SETTING, Elements, ListElement, find_begun
+from .elements import DEFAULT, SETTING, Elements, KnownCount, ListElement, find_begun
 from .given_lists import GivenLists
-from .graph import How
+from .graph import NOT_GIVEN, How
 from .literals import spell_number
 from .makers import Makers
 from .named_in_turns import DefaultGiven, NamesInTurns
 from .names import is_open, make_open_part, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
+from .printing import find_format_place
 from .reaching import LOOPS, FlowValue, ReachingValues
 from .types import Cls, split_name
 
@@ -74,6 +75,8 @@ ASKING = frozenset(("if", "unless", "case"))
 _EACH = FlowExpr("other")
 _COUNTER = "enumerate"
 TOO_MANY = "too many steps"
+# What a text is that was not given yet.
+NOT_YET = frozenset(("", "None", "nullptr"))
 WHICH_TURN = "which turn of the loop it is"
 NOT_PASSED = "has no known value that passes the conditions around"
 _TOGETHER = "these parts of the name belong together"
@@ -245,6 +248,8 @@ class FlowValues:
         self._prefixes: dict[int, str] = {}
         self._asked_prefixes: set[int] = set()
         self._left = _MOST_STEPS
+        # Limits of loops that are asked for.
+        self._counted: set[tuple[Fn, FlowExpr]] = set()
         # How much more is being evaluated than was come to step by step: what stands for objects that make others.
         self._outer = 0
         self._budget = [_STEPS_IN_ALL + _STEPS_A_FUNCTION * len(self.code.functions)]
@@ -376,7 +381,12 @@ class FlowValues:
         elif kind == "text":
             yield FlowValue(value.text)
         elif kind == SETTING:
-            yield FlowValue(value.text, "launch")
+            yield FlowValue(value.text, cast(How, value.parts[0].text) if value.parts else "launch")
+        elif kind == "name" and (called := _find_read_call(value.text, value)) is not None:
+            yield from self._evaluate(called, fn, line, seen)
+        elif kind == DEFAULT:
+            for one in self._evaluate(value.parts[0], fn, line, seen):
+                yield one if one.how not in ("literal", "given") else one._replace(how="default")
         elif kind == "name":
             yield from self._evaluate_name(value.text, fn, line, seen)
         elif kind == "join":
@@ -411,12 +421,14 @@ class FlowValues:
     def _evaluate_fallback(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         """`a or b`: b is there where a may be empty, as a default where it is not known to be."""
         found = list(self._evaluate(value.parts[1], fn, line, seen))
-        yield from (one for one in found if one.text != "")
-        empty = [one for one in found if not one.text]
+        yield from (one for one in found if one.text not in NOT_YET)
+        empty = [one for one in found if not one.text or one.text in NOT_YET]
         if found and not empty:
             return
-        sure = all(one == _NOT_GIVEN or (one.text == "" and one.how != "default") for one in empty)
-        for one in self._evaluate(value.parts[2], fn, line, seen):
+        sure = all(one == _NOT_GIVEN or (one.text in NOT_YET and one.how != "default") for one in empty)
+        conditions = {one.only_if for one in empty}
+        condition = "" if "" in conditions else " or ".join(sorted(conditions))
+        for one in put_under_more(self._evaluate(value.parts[2], fn, line, seen), condition):
             yield one if sure or one.how not in ("literal", "given") else one._replace(how="default")
 
     def _evaluate_join(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
@@ -566,7 +578,28 @@ class FlowValues:
     def elements(self) -> Elements:
         """What lists and dictionaries of the code hold."""
         asked = (self.runs, self.find_only_call, self.find_makers, GivenLists(self).find, self.find_turn)
-        return Elements(self.code, *asked)
+        return Elements(self.code, *asked, self._count)
+
+    def _count(self, value: FlowExpr, fn: Fn, line: int) -> KnownCount | None:
+        """The only number that a limit of a loop may be."""
+        mark = fn, value
+        if mark in self._counted:
+            return None
+        self._counted.add(mark)
+        left = self._left
+        try:
+            listed = _find_measured(value, fn)
+            held = self.elements.list_turns(listed, fn, line) if listed is not None else None
+            if held:
+                return KnownCount(len(held), _tell_how(held))
+            found = self.evaluate(value, fn, line)
+        finally:
+            self._counted.discard(mark)
+            self._left = left
+        one = found[0]
+        if len(found) > 1 or one.text is None or not is_number(one.text) or one.only_if or one.how not in _LEAST:
+            return None
+        return KnownCount(int(one.text), one.how)
 
     def _evaluate_chosen(
         self, container: FlowExpr, index: FlowExpr, fn: Fn, line: int, seen: tuple
@@ -1452,15 +1485,17 @@ class FlowValues:
         if python and last in _STRING_METHODS and (head or value.receiver is not None):
             yield from self._evaluate_string_method(value, fn, line, seen)
             return
-        if head and (last in _SAME or (last == "get" and value.receiver is not None and not value.parts)):
-            if value.receiver is not None and (value.receiver.kind == "call" or head == "()"):
-                yield from self._evaluate(value.receiver, fn, line, seen)
+        got = last == "get" and not python and value.receiver is not None and not value.parts
+        if head and (last in _SAME or got):
+            called = value.receiver if not python else _find_read_call(head, value)
+            if called is not None and (called.kind == "call" or head == "()"):
+                yield from self._evaluate(called, fn, line, seen)
             elif head.endswith("()"):
                 yield from self._evaluate_inner(head.removesuffix("()"), fn, line, seen)
             else:
                 yield from self._evaluate_name(head, fn, line, seen)
             return
-        if head and last in ("get", "at") and value.parts and value.receiver is None:
+        if head and last in ("get", "at") and value.parts and (python or value.receiver is None):
             chosen = self.elements.select(FlowExpr("name", head), value.parts[0], fn, line)
             if chosen:
                 for one in chosen:
@@ -1489,7 +1524,7 @@ class FlowValues:
             if joined is not None:
                 yield from self._evaluate_join(joined, fn, line, seen)
                 return
-        if last == "to_string" and len(value.parts) == 1:
+        if last in ("to_string", "lexical_cast") and len(value.parts) == 1:
             found = list(self._evaluate(value.parts[0], fn, line, seen))
             # Of what is no whole number, it is not the same text.
             if found and all(one.text is not None and is_number(one.text) for one in found):
@@ -1539,15 +1574,27 @@ class FlowValues:
                 yield joined if joined.text is None else joined._replace(text=posixpath.join(*texts))
             return
         if method == "join":
-            listed = arguments[0] if len(arguments) == 1 and arguments[0].kind == "list" else None
-            if listed is None or value.receiver is None:
+            if len(arguments) != 1 or value.receiver is None:
                 yield unknown
-                return
-            between = [part for each in listed.parts for part in (value.receiver, each)][1:]
-            yield from self._evaluate_join(FlowExpr("join", "", tuple(between)), fn, line, seen)
+            elif arguments[0].kind == "list":
+                between = [part for each in arguments[0].parts for part in (value.receiver, each)][1:]
+                yield from self._evaluate_join(FlowExpr("join", "", tuple(between)), fn, line, seen)
+            else:
+                listed = self.elements.list_in_order(arguments[0], fn, line)
+                if not listed or any(one.only_if for one in listed):
+                    yield unknown
+                    return
+                held = [
+                    _take_first(iter(self._evaluate_listed(one, (*seen, ("element", one.value))))) for one in listed
+                ]
+                for row in islice(product(*held), _MOST):
+                    joined = _join(row)
+                    texts = [one.text or "" for one in row]
+                    yield joined if joined.text is None else joined._replace(text=value.receiver.text.join(texts))
             return
-        if value.receiver is not None:
-            held = list(self._evaluate(value.receiver, fn, line, seen))
+        called = _find_read_call(head, value) if head else value.receiver
+        if called is not None:
+            held = list(self._evaluate(called, fn, line, seen))
         elif head.endswith("()"):
             held = list(self._evaluate_inner(head.removesuffix("()"), fn, line, seen))
         else:
@@ -1609,6 +1656,11 @@ class FlowValues:
         only = near[0] if near and arguments is not None else None
         targets = self._select_overridden(callee, fn)
         for target in targets if only is None else select_overloads(targets, only, fn):
+            form = find_format_place(target) if arguments is not None else None
+            if form is not None and arguments is not None:
+                returned = True
+                yield from self._evaluate_printed(callee, arguments[form:], fn, line, seen)
+                continue
             if self._is_in(("returns", target), seen):
                 continue
             inner = (*seen, ("returns", target))
@@ -1622,6 +1674,21 @@ class FlowValues:
             self._left = values._left
         if not returned:
             yield FlowValue(None, "unresolved", f"what `{callee}` gives is not known")
+
+    def _evaluate_printed(
+        self, callee: str, arguments: tuple[FlowExpr, ...], fn: Fn, line: int, seen: tuple
+    ) -> Iterator[FlowValue]:  # fmt: skip
+        """What printf makes of a format and what follows it."""
+        for one in self._evaluate(arguments[0], fn, line, seen) if arguments else ():
+            pieces = split_percent_format(one.text) if one.text is not None else None
+            joined = make_join(pieces, arguments[1:])
+            if one.text is not None and joined is None:
+                yield FlowValue(None, "unresolved", f"what `{callee}` makes of it is not followed")
+            elif joined is None:
+                yield one
+            else:
+                for each in self._evaluate_join(joined, fn, line, seen):
+                    yield each if each.text is None else _join((one, each))._replace(text=each.text)
 
     def _evaluate_returned(self, each: Assignment, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
         """What a function returns at one place, nothing where it does not come there."""
@@ -1678,6 +1745,30 @@ class FlowValues:
         else:
             given = None
         return FlowValue(given, "launch") if given is not None else None
+
+    def find_default(self, use: FrameworkCall) -> tuple[FlowExpr, Fn, int] | None:
+        """The only default of the parameter that a use declares or reads, where no launch sets it, with where it
+        stands."""
+        names = self._list_parameter_names(use, ())
+        name = names[0].text if len(names) == 1 else None
+        if not name or self._find_setting_of(use, name) is not None:
+            return None
+        own = DefaultGiven(use)
+        others = [one for one in self._list_declared(name) if one.use.call is not use.call]
+        others = [one for one in others if one.use.fn.source.package == use.fn.source.package]
+        near = [one for one in others if one.use.fn.source is use.fn.source]
+        found: list[tuple[FlowExpr, Fn, int]] = []
+        for one in (own, *(near or self._select_running(others) or others)):
+            default = self.calls.find_argument(one.use, one.use.row.default) if one.use.row.default else None
+            if default is not None and not _is_type(default):
+                found.append((default, one.use.fn, one.use.call.line))
+                if one is own:
+                    break
+        return found[0] if len(found) == 1 else None
+
+    def list_turns(self, value: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
+        """What a loop over a list goes through in its turns."""
+        return self.elements.list_turns(value, fn, line)
 
     def note_open(self) -> bool:
         """Whether a launch gives anything, which is noted."""
@@ -1771,7 +1862,7 @@ class FlowValues:
                 None, "unresolved", f"{NO_DEFAULT}`{name}` is declared without a value: it is given at start"
             )
         elif not yielded:
-            reason = f"{NO_DEFAULT}`{name}` has no default here" if name else "which parameter it is, is not known"
+            reason = f"{NO_DEFAULT}`{name}` {NOT_GIVEN}" if name else "which parameter it is, is not known"
             yield FlowValue(None, "given", reason)
 
     def _is_typed_alone(self, one: DefaultGiven) -> bool:
@@ -1894,6 +1985,14 @@ def _get_key(value: FlowExpr) -> FlowExpr:
     return value.parts[0] if value.kind == "list" and len(value.parts) == 2 else value
 
 
+def _find_read_call(path: str, value: FlowExpr) -> FlowExpr | None:
+    """The call whose result a path is, or what is kept in it; None where it is something else. value: an expression of
+    Python that begins with the path."""
+    while value.receiver is not None and get_tail(path) in _SAME:
+        path = path.rpartition(".")[0]
+    return value.receiver if path.endswith("()") else None
+
+
 def _mentions(value: FlowExpr, path: str) -> bool:
     """Whether an expression has a path in it."""
     named = value.kind != "text" and (value.text == path or value.text.startswith(f"{path}."))
@@ -1904,6 +2003,20 @@ def _mentions(value: FlowExpr, path: str) -> bool:
 def _restore_alone(values: list[FlowValue]) -> list[FlowValue]:
     """Values, where nothing is known beside which what is not known could hold, without the mark."""
     return values if any(one.text is not None for one in values) else [one._replace(beside=False) for one in values]
+
+
+def _find_measured(value: FlowExpr, fn: Fn) -> FlowExpr | None:
+    """The list whose length an expression is: of `len(list)` and `list.size()`; None for all else."""
+    if fn.source.facts.language == "python":
+        return value.parts[0] if value.kind == "call" and value.text == "len" and len(value.parts) == 1 else None
+    is_size = value.kind == "call" and value.text.endswith(".size") and not value.parts and value.receiver is None
+    return FlowExpr("name", value.text.removesuffix(".size")) if is_size else None
+
+
+def _tell_how(held: Iterable[ListElement]) -> How:
+    """How the elements of a list are known, as far as these say it themselves."""
+    kinds = {one.value.kind for one in held}
+    return "default" if DEFAULT in kinds else "launch" if SETTING in kinds else "literal"
 
 
 def _read_character(text: str) -> str:

@@ -177,8 +177,8 @@ def _find_scripts(package: Package, files: Mapping[str, FlowFile]) -> dict[str, 
     found: dict[str, str] = {}
     for path, setup in package.linked.setup:
         folder = path.rpartition("/")[0]
-        for name, target, _, _ in setup.entry_points:
-            where = find_entry_point(target, folder, present)
+        for name, module, _, function in setup.entry_points:
+            where = find_entry_point(module, function, folder, present)
             if where:
                 found[name] = where
     reached = {where.partition(":")[0] for where in found.values()}

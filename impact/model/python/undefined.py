@@ -4,6 +4,7 @@ functions that entry points name and their modules lack."""
 
 from __future__ import annotations
 
+import itertools
 import posixpath
 import sys
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -325,12 +326,18 @@ class PackageModules:
             meant.add("/".join((beside, *rest)))
         if not meant or head in self._open or not _GENERATED.isdisjoint(rest):
             return False
-        if any(self.may_be_built(part) for part in rest):
+        if any(self.may_be_built(part) for part in rest[min(self._count_folders(path, rest) for path in meant) :]):
             return False
         there = {_strip_ending(path) for path in self._by_name.get(rest[-1], ())}
         # Some files are there that nobody could read.
         there.update(root for root in meant if not {f"{root}.py", f"{root}/__init__.py"}.isdisjoint(self._there))
         return meant.isdisjoint(there) and not any(f"{f}/".startswith(f"{m}/") for m in meant for f in self._folders)
+
+    def _count_folders(self, path: str, rest: list[str]) -> int:
+        """How many of the last parts of a module's path, from the first of them on, are folders with Python files."""
+        above = path.split("/")[: -len(rest)]
+        folders = ("/".join((*above, *rest[:number])) for number in range(1, len(rest)))
+        return sum(1 for _ in itertools.takewhile(self._folders.__contains__, folders))
 
     def list_around(self, path: str) -> frozenset[str]:
         """The names of the outermost Python packages that a file lies in."""

@@ -10,10 +10,11 @@ Why it breaks
     The compiler stops with "was not declared in this scope", or Python with an AttributeError or ImportError.
 
 Severity
-    error for unguarded names in code that is built or run, tests in Python that CMake runs and ROS 2's in C++ included;
-    warning in other tests, under conditions of CMake that are not known, where the name stays and changed its meaning,
-    and for the first name of each package or library that goes with an update, or on the newest distro's platform; note
-    under other tests of the code itself, in examples, and for the rest of those.
+    error for unguarded names in code that is built or run, tests in Python that CMake runs and ROS 2's in C++
+    included; warning in other tests, in Python files that nothing is known to install, under conditions of CMake that
+    are not known, where the name stays and changed its meaning, and for the first name of each package or library
+    that goes with an update, or on the newest distro's platform; note under other tests of the code itself, in
+    examples, and for the rest of those.
 
 Example
     cv::imread(path, CV_LOAD_IMAGE_ANYDEPTH)    // gone in OpenCV 4
@@ -37,6 +38,7 @@ from ...targets.changes import list_excuses
 from ...targets.providers.stdlib import has_substitute
 from ...targets.symbol import Availability
 from ...targets.version import parse
+from ..packages.install_rules import may_stay_behind
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, list_place_doubts, rate_upcoming, rule
 from .diagnosis import UPSTREAM, build_availability_texts, diagnose
 from .reviewed_names import ReviewedNames
@@ -78,8 +80,14 @@ def _list_reviewed(view: TargetView, package: Package, rows: ReviewedNames) -> I
         kind = "python" if use.language == "python" else "c++"
 
         def choose(found: Iterable[Availability], use: NameUse = use) -> Availability | None:
-            concerned = (row for row in found if view.may_concern(package, row.package, use.at.path, use.language))
-            return next(concerned, None)
+            concerned = [row for row in found if view.may_concern(package, row.package, use.at.path, use.language)]
+            if len(concerned) < 2:
+                return next(iter(concerned), None)
+            # Two libraries may have a name: Asio, and Boost under a shorter name of its namespace.
+            scope = use.text.partition("::")[0]
+            return min(
+                concerned, key=lambda row: (not view.includes_library(package, row.package), row.package != scope)
+            )
 
         row = choose(rows.find(use))
         early = rows.list_rows(kind, use.text, "not yet") if row is None and use.text not in rows.own else []
@@ -118,6 +126,8 @@ def _list_doubts(
 ) -> list[Doubt]:
     role = "run" if use.language == "python" and _is_run(package, use) else use.role
     doubts = [*list_place_doubts(view, role, use.conditions)]
+    if use.language == "python" and role == "run" and may_stay_behind(view, package, use.at.path):
+        doubts.append(Doubt.LATE)
     if use.text in rows.own:
         doubts.append(Doubt.OWN)
     if view.is_included_under_conditions(package, row.package):

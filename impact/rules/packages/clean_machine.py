@@ -187,7 +187,9 @@ def _collect_unknown_doubts(view: TargetView, package: Package, need: Need, name
     include = need.how == "include" and need.providers[0].kind == "system"
     bundling = view.unknown_contents.list_unread(package) if include else ()
     if opaque or bundling or view.unknown_contents.may_come_along(package, name, need.providers):
-        return (Doubt.INCOMPLETE,)
+        # Nearly every package of ROS 1 that compiles something brings its client library and what comes along with it.
+        likely = view.target.ros == 1 and need.providers[0].kind == "ros" and view.roles.comes_with_client_library(name)
+        return (Doubt.INCOMPLETE, Doubt.DISPENSABLE) if likely else (Doubt.INCOMPLETE,)
     together = need.role == "test" and not view.roles.farm_makes_tests
     return (Doubt.LUCKY,) if together and view.is_met(need.providers, view.brought_to_workspace) else ()
 

@@ -10,7 +10,7 @@ Why it breaks
 
 Severity
     error for what CMake or the compiler needs and only dependencies to run bring, which the build farm does not
-    install; warning otherwise.
+    install; warning otherwise; note where the distro has ended, so that what it brings stays.
 
 Example
     find_package(angles REQUIRED)               # and package.xml declares robot_localization, which uses angles
@@ -23,7 +23,7 @@ Not reported
     package in the same role; what whoever starts launch files has; conditional code.
 """
 
-from ..vocabulary import Diagnostic, Package, TargetView, Together, make_sort_key, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Together, list_ended_doubts, make_sort_key, rule
 from .clean_machine import collect_chance_doubts, comes_from_elsewhere, is_chance
 from .undeclared_needs import declare_need, describe_need, find_kind, find_undeclared, list_sources, make_texts
 
@@ -55,7 +55,7 @@ def dependency_by_chance(view: TargetView, package: Package):
                 package.name,
                 {**describe_need(package, first), "sources": sources, "distro": view.target.distro},
                 find_kind(first, _ELSEWHERE if elsewhere else ""),
-                doubts=collect_chance_doubts(view, package, first),
+                doubts=(*collect_chance_doubts(view, package, first), *(() if elsewhere else list_ended_doubts(view))),
                 fix=declare_need(view, package, first, name),
                 together=(Together("by chance"), Together(f"`{name}` comes by chance", everywhere=True)),
             )

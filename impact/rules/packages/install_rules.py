@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from ....edges.memory import cache_in_derived
 from ...model.cmake.build import Install
 from ...model.cmake.installed import lets_in, list_copied_files
-from ..vocabulary import At, Package, TargetView
+from ..vocabulary import At, Doubt, Package, TargetView, list_ended_doubts
 from .data_files import read_data_files
 
 LAUNCH_FILE = re.compile(r"[._]launch\.(?:py|xml|ya?ml)\Z")
@@ -21,6 +21,12 @@ def read_installs(view: TargetView, package: Package) -> list[Install] | None:
     if package.build.finds_declared and package.build.packaged is None:
         return None
     return [i for i in package.build.installs if view.applies(i.conditions)]
+
+
+def list_install_doubts(view: TargetView, package: Package) -> tuple[Doubt, ...]:
+    """What speaks against more than a note where a rule to install something is missing: packages of catkin run from
+    the build tree, and into a distro that has ended nothing is released any more."""
+    return list_ended_doubts(view) if package.build_type == "catkin" else ()
 
 
 def list_copying_rules(view: TargetView, package: Package) -> Iterator[Install]:
@@ -52,8 +58,8 @@ def is_installed(installs: Iterable[Install], path: str) -> bool:
 
 def may_stay_behind(view: TargetView, package: Package, path: str) -> bool:
     """Whether a Python file counts as installed only since install rules take what is not known: a variable that
-    nothing sets may name it, or not, and so may data_files that only running setup.py tells. What a launch file or
-    script starts is there."""
+    nothing sets may name it, or not, and so may data_files that only running setup.py tells, and all that a build
+    system does whose files are not read. What a launch file or script starts is there."""
     if package.build_type == "ament_python":
         folder, inside = posixpath.dirname(path), package.strip_path(path)
         if "/" not in inside or inside.startswith((f"{package.name}/", "launch/")) or read_data_files(package):
@@ -64,7 +70,8 @@ def may_stay_behind(view: TargetView, package: Package, path: str) -> bool:
     known = [rule for rule in installs if not any("$" in item for item in rule.items)]
     inside = package.strip_path(path)
     by_setup = package.build_type == "catkin" and inside.startswith("src/") and package.has_files("setup.py")
-    if len(known) == len(installs) or by_setup or is_installed(known, path):
+    is_read = bool(package.build.files) or package.build_type == "catkin"
+    if (is_read and len(known) == len(installs)) or by_setup or is_installed(known, path):
         return False
     return posixpath.basename(path) not in list_references(view, package, "executable")
 

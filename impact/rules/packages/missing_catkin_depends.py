@@ -9,8 +9,8 @@ Why it breaks
     The package builds, and dependants do not get what its messages and headers include, unless they find it themselves.
 
 Severity
-    warning; note for messages of packages that come along with roscpp, and for headers of packages that the distro
-    brings: all of them lie in one folder.
+    warning; note for messages and headers of packages that the distro brings, since all of them lie in one folder, for
+    messages of packages that come along with roscpp, and for `message_runtime` where the distro has ended.
 
 Example
     generate_messages(DEPENDENCIES geometry_msgs)
@@ -25,7 +25,7 @@ Not reported
 
 from collections.abc import Collection, Iterator
 
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, list_ended_doubts, rule
 from .unlisted_field_package import find_field_owner
 
 # What the generated headers of a package include.
@@ -70,7 +70,8 @@ def _list_of_messages(view: TargetView, package: Package):
     reach = view.roles.list_found_with(named)
     made = next((g for g in package.build.generated if g.how == "catkin" and g.offered and g.files), None)
     if made is not None and _RUNTIME not in reach and view.is_sure(made.conditions):
-        yield Diagnostic(package.build.catkin_package, _RUNTIME, package.name, kind="runtime", together=_RUNTIME_ONCE)
+        at, doubts = package.build.catkin_package, list_ended_doubts(view)
+        yield Diagnostic(at, _RUNTIME, package.name, kind="runtime", doubts=doubts, together=_RUNTIME_ONCE)
     for made in package.build.generated:
         if made.how != "catkin" or not made.offered or not view.is_sure(made.conditions):
             continue
@@ -78,7 +79,8 @@ def _list_of_messages(view: TargetView, package: Package):
         for name, at in made.dependencies:
             if "$" not in name and name not in reach and name in owners:
                 reach |= {name}
-                doubts = (not view.roles.comes_with_client_library(name) or Doubt.DISPENSABLE,)
+                apart = name in view.workspace.packages and not view.roles.comes_with_client_library(name)
+                doubts = (apart or Doubt.DISPENSABLE,)
                 yield Diagnostic(at, name, package.name, kind="messages", doubts=doubts, together=_ONCE)
 
 

@@ -12,7 +12,8 @@ Severity
     error where the installed package is sure to fail: a library that catkin_package() exports beside installed ones, a
     program that an installed launch file starts in any case (in ROS 1 where others are installed). warning otherwise:
     in a workspace that is never installed all of this works. Where more than three programs of a package are not
-    installed beside others, one of them is enough, and the rest are notes.
+    installed beside others, or where none at all is, one of them is enough, and the rest are notes; so is all that is
+    no error in ROS 1 where the distro has ended, since nothing is released into it any more.
 
 Example
     add_executable(udp_socket_node src/udp_socket_node.cpp)     # and install(TARGETS tcp_socket_node ...)
@@ -31,9 +32,9 @@ import re
 from ...model.cmake.build import BuildTarget, is_for_tests
 from ...model.package import find_folder_role
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
-from .install_rules import is_installed, list_references, read_installs
+from .install_rules import is_installed, list_install_doubts, list_references, read_installs
 
-_ONCE = (Together("no target installed"),)
+_ONCE, _STARTED = (Together("no target installed"),), (Together("no target installed", few=3),)
 _HABIT = (Together("program not installed", few=3),)
 _TARGETS = "add it to install(TARGETS ...)[[, where nothing sets `{unset}`]]"
 
@@ -89,8 +90,9 @@ def missing_install(view: TargetView, package: Package):
             # ROS 2 starts nothing that is not installed.
             started_anyway = why == "started" and _is_started(view, package, name)
             stops = (installed and why == "exported") or ((installed or view.target.ros == 2) and started_anyway)
-            doubts = () if stops and not (unset or package.build.unresolved) else (Doubt.DISTURBS,)
-            together = {"nothing": _ONCE, "program": _HABIT}.get(why, ())
+            sure = stops and not (unset or package.build.unresolved)
+            doubts = () if sure else (Doubt.DISTURBS, *list_install_doubts(view, package))
+            together = {"nothing": _ONCE, "program": _HABIT}.get(why, () if installed else _STARTED)
             data = {"unset": min(unset, default="")}
             yield Diagnostic(target.at, name, package.name, data, kind=why, doubts=doubts, together=together)
 

@@ -13,7 +13,7 @@ Severity
     error for a library of its own that catkin_package() exports and no command makes, for a library that is exported
     and not installed, and for targets among dependencies where another package of the workspace finds this one;
     warning for other such targets, where dependants are not linked to a library, for a package that nobody has, or a
-    misspelt name in DEPENDS; note for other names in DEPENDS.
+    misspelt name in DEPENDS; note for other names in DEPENDS, and for the own name of a package that makes no library.
 
 Example
     ament_export_libraries(arm_control)         # and no add_library(arm_control ...)
@@ -86,6 +86,10 @@ def _list_of_catkin(view: TargetView, package: Package):
     found = names | {f.prefix for f in package.build.found}
     installs = (item for install in package.build.installs for item in install.items)
     made = {posixpath.basename(item) for item in (*installs, *package.build.made)}
+    # A package without libraries and messages gives nothing for which others would find it.
+    libraries = any(target.kind == "library" for target in package.build.targets)
+    messages = any(generated.how != "reconfigure" for generated in package.build.generated)
+    wanted = libraries or messages or package.name in view.workspace.includers
     for export in (export for export in package.build.exports if "$" not in export.item):
         item, target = export.item, targets.get(export.item)
         if export.how == "libraries" and target is not None:
@@ -98,7 +102,8 @@ def _list_of_catkin(view: TargetView, package: Package):
             if not outside and made.isdisjoint((f"lib{item}.so", f"lib{item}.a")):  # of which no target is known
                 own = asked and all(link.item != item for link in package.build.target_links)
                 own = own and not view.unknown_contents.may_hold(package, item)
-                doubts = ((own and view.is_sure(export.conditions)) or Doubt.AMBIGUOUS,)
+                sure = own and view.is_sure(export.conditions)
+                doubts = (sure or Doubt.AMBIGUOUS, asked or wanted or Doubt.DISPENSABLE)
                 yield Diagnostic(export.at, item, package.name, kind="no target", doubts=doubts)
         elif export.how == "system_depends" and item not in found and not any(sets_variables(f, item) for f in names):
             near = next((f for f in found if f and f.lower().rstrip("3") == item.lower().rstrip("3")), "")
@@ -129,12 +134,16 @@ def _list_of_ament(view: TargetView, package: Package, exports) -> Iterator[Diag
         return
     for export in (e for e in exports if e.how == "ament_export_libraries" and view.is_sure(e.conditions)):
         item, target = export.item, targets.get(export.item)
-        if re.search(r"[$/.:]|^-", item):
-            continue
+        if re.search(r"[$/.:]|^-", item) or (package.build.generated and "__rosidl_" in item):
+            continue  # the generator of interfaces makes libraries of its own
         if target is not None and target.kind == "library" and item not in installed and not target.alias_of:
             yield Diagnostic(export.at, item, package.name, kind="not installed")
         elif item not in names and (not view.find_cmake(item) or item == package.name):
-            yield Diagnostic(export.at, item, package.name, kind="not built", doubts=(Doubt.DISTURBS,))
+            # Some export their own name by habit: of a package that makes no library at all, nobody wants to link one.
+            linked = item != package.name or package.name in view.workspace.includers
+            linked = linked or any(t.kind == "library" for t in targets.values())
+            doubts = (Doubt.DISTURBS, linked or Doubt.DISPENSABLE)
+            yield Diagnostic(export.at, item, package.name, kind="not built", doubts=doubts)
 
 
 def _list_targets_as_packages(view: TargetView, package: Package) -> Iterator[Diagnostic]:

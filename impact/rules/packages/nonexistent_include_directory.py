@@ -7,7 +7,8 @@ Why it breaks
     catkin_package() stops at a folder that does not exist. Where headers are not installed, dependants stop at them.
 
 Severity
-    error where the folder does not exist; warning where its headers are not installed.
+    error where the folder does not exist; warning where its headers are not installed; of that, note in
+    ROS 1 where the distro has ended, since nothing is released into it any more.
 
 Example
     ament_export_include_directories(include)   # and no rule installs its headers
@@ -25,7 +26,7 @@ from collections.abc import Iterator
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .absent_paths import is_absent
 from .ament_exports import read_ament_exports
-from .install_rules import is_installed
+from .install_rules import is_installed, list_install_doubts
 
 # The exports of libraries to link.
 _OF_LIBRARIES = frozenset({"ament_export_libraries", "libraries"})
@@ -89,4 +90,5 @@ def _list_without_headers(view: TargetView, package: Package) -> Iterator[Diagno
             continue
         place = "${CATKIN_GLOBAL_INCLUDE_DESTINATION}" if catkin else "include"
         data = {"directory": package.strip_path(folder), "place": place}
-        yield Diagnostic(export.at, data["directory"], package.name, data, "no header", (Doubt.DISTURBS,))
+        doubts = (Doubt.DISTURBS, *list_install_doubts(view, package))
+        yield Diagnostic(export.at, data["directory"], package.name, data, "no header", doubts)

@@ -8,7 +8,8 @@ Why it breaks
 
 Severity
     warning, since building from source works; of several such keys of a package the first, and the rest are notes, as
-    one is enough to keep it from being released.
+    one is enough to keep it from being released, and where the distro has ended, into which nothing is released any
+    more.
 
 Example
     <exec_depend>python3-quaternion-pip</exec_depend>
@@ -20,7 +21,7 @@ Not reported
     Packages that were never released.
 """
 
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, list_ended_doubts, rule
 from .unresolved_names import list_unresolved
 
 _ONCE = (Together("pip"),)
@@ -38,4 +39,4 @@ def pip_only_key(view: TargetView, package: Package):
     if view.target.was_ever_released(package.name):
         for name, at, resolution in list_unresolved(view, package):
             if resolution is not None and resolution.manager == "pip":
-                yield Diagnostic(at, name, package.name, together=_ONCE)
+                yield Diagnostic(at, name, package.name, doubts=list_ended_doubts(view), together=_ONCE)

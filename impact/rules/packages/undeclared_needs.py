@@ -115,8 +115,12 @@ def choose_name(view: TargetView, need: Need) -> str | None:
     by_form = need.how in ("launch", "setting", "find_package", "component", "import", "include")
     if not by_form or first.kind != "ros" or not first.sure:
         return None
-    meant = first.name == re.split(r"[./]", need.subject)[0] and not view.target.is_other_generation(first.name)
-    return first.name if meant else None
+    if first.name != re.split(r"[./]", need.subject)[0]:
+        return None
+    # A launch file in Python is of ROS 2, whoever has ported what it starts.
+    ported = need.how == "launch" and need.at.path.endswith(".py") and view.target.ros == 2
+    ported = ported and not view.find_reviewed("package", first.name)
+    return first.name if ported or not view.target.is_other_generation(first.name) else None
 
 
 def _strip_python(package: str) -> str:

@@ -26,7 +26,8 @@ Severity
     packages of ROS are (`finger_tricks`); error for those whose interfaces are included or imported. note: conditional
     code, examples (installed ones too, in what they import and start), documentation, files that nothing compiles, or
     is known to install, and all but the first of more than five imports (in ROS 1 and in tests, of several), or
-    packages that launch files start, which a package does not declare, and further packages that lack the same.
+    packages that launch files start, which a package does not declare, and further packages that lack the same; for
+    distros that have ended, whose machines were set up while they were maintained, all that is no error.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
@@ -50,6 +51,7 @@ from ..vocabulary import (
     TargetView,
     Together,
     limit_severity,
+    list_ended_doubts,
     make_sort_key,
     rule,
 )
@@ -90,6 +92,8 @@ def undeclared_package(view: TargetView, package: Package):
         condition = next((d.condition for d in package.manifest.dependencies if d.name == name and d.condition), "")
         if condition and "$ROS_" not in condition:
             doubts = (*doubts, Doubt.CONDITIONAL)  # whoever uses it may set the variable
+        if doubts:  # machines of an ended distro were set up while it was maintained
+            doubts = (*doubts, *list_ended_doubts(view))
         known = view.is_available(name) or view.is_private(name) or name in view.declared_somewhere
         data = {**describe_need(package, first), "condition": condition, "distro": view.target.distro}
         yield Diagnostic(

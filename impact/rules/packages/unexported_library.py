@@ -14,7 +14,9 @@ Use instead
     catkin_package(INCLUDE_DIRS include LIBRARIES arm)
 
 Not reported
-    Packages with CONFIG_EXTRAS or CFG_EXTRAS, and those of catkin whose headers others of the workspace include.
+    Packages with CONFIG_EXTRAS or CFG_EXTRAS, those of catkin whose headers others of the workspace include, and those
+    of plugins: with a plugin description, or nodes that libraries register for behaviour trees; libraries that launch
+    files or settings name.
 """
 
 import posixpath
@@ -44,7 +46,7 @@ def unexported_library(view: TargetView, package: Package):
         return
     exports = package.build.exports
     folders = tuple(f"{posixpath.normpath(e.item)}/" for e in exports if e.how in _OF_FOLDERS)
-    if not folders or package.build.unresolved or package.linked.registered or package.linked.plugins:
+    if not folders or package.build.unresolved or _makes_plugins(package):
         return
     if any(e.how in _OFFERS or "$" in e.item for e in exports):
         return
@@ -52,10 +54,16 @@ def unexported_library(view: TargetView, package: Package):
         return  # unexported-header looks at those who include them
     public = [p for p, _ in package.linked.source_targets if p.startswith(folders)] if catkin else ()
     offered = frozenset(public or package.linked.public_headers)
-    linked = {link.item for link in package.build.target_links}
+    linked = {link.item for link in package.build.target_links}.union(package.linked.named)
     headers = {name for path, names in package.linked.source_targets if path in offered for name in names} - linked
     # Those who find a package of catkin in the devel space ask for no install rule.
     made = headers if catkin else headers & package.build.installed_targets
     for target in package.build.targets:
         if target.kind == "library" and target.name in made and view.is_sure(target.conditions):
             yield Diagnostic(target.at, target.name, package.name, kind="catkin" if catkin else "ament")
+
+
+def _makes_plugins(package: Package) -> bool:
+    """Whether the libraries of a package are loaded at run time."""
+    linked = package.linked
+    return bool(linked.registered or linked.plugins or linked.tree_nodes.nodes)

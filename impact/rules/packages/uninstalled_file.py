@@ -9,7 +9,8 @@ Why it breaks
     Everything works from the source tree (catkin's devel space, symlinked installs), and the installed robot lacks it.
 
 Severity
-    error for a folder of launch files of ROS 2, which `ros2 launch` finds nowhere else; warning.
+    error for a folder of launch files of ROS 2, which `ros2 launch` finds nowhere else; warning; note in ROS 1 where
+    the distro has ended, since nothing is released into it any more.
 
 Example
     install(DIRECTORY launch DESTINATION share/${PROJECT_NAME})         # and a launch file opens config/robot.yaml
@@ -29,7 +30,14 @@ from collections.abc import Iterator, Mapping
 from ...model.package import find_folder_role
 from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .data_files import list_copied
-from .install_rules import LAUNCH_FILE, is_installed, list_places, list_references, read_installs
+from .install_rules import (
+    LAUNCH_FILE,
+    is_installed,
+    list_install_doubts,
+    list_places,
+    list_references,
+    read_installs,
+)
 
 _OPENED = "`{file}` is opened through the package's share folder ({opener}) but is not installed"
 _LAUNCHED = "`{file}` cannot be launched: the folder `{subject}` is not installed"
@@ -61,11 +69,11 @@ def uninstalled_file(view: TargetView, package: Package):
     installs = read_installs(view, package)
     if installs is None:
         if copied := list_copied(package):
-            yield from _list_opened(package, copied, opened)
+            yield from _list_opened(package, copied, opened, ())
     elif not installs and package.build_type == "catkin" and not package.build.targets:
-        yield from _list_nothing(package, opened)
+        yield from _list_nothing(package, opened, list_install_doubts(view, package))
     else:
-        yield from _list_opened(package, installs, opened)
+        yield from _list_opened(package, installs, opened, list_install_doubts(view, package))
 
 
 def _list_exported(package: Package) -> dict[str, At]:
@@ -83,19 +91,22 @@ def _list_exported(package: Package) -> dict[str, At]:
     return found
 
 
-def _list_nothing(package: Package, opened: Mapping[str, At]) -> Iterator[Diagnostic]:
-    """A package that compiles nothing and installs nothing. opened: what launch files and scripts open in it."""
+def _list_nothing(package: Package, opened: Mapping[str, At], doubts: tuple[Doubt, ...]) -> Iterator[Diagnostic]:
+    """A package that compiles nothing and installs nothing. opened: what launch files and scripts open in it. doubts:
+    of list_install_doubts()."""
     inside = {posixpath.normpath(name).split("/")[0] for name in opened}
     folders = tuple(folder for folder in (*_DATA, *sorted(inside - {*_DATA})) if package.has_files(folder))
     if folders and package.build.catkin_package is not None and not package.manifest.metapackage:
         data = {"folders": folders, "listed": " ".join(folders)}
-        doubts = (Doubt.DISTURBS,)
+        doubts = (Doubt.DISTURBS, *doubts)
         yield Diagnostic(package.build.catkin_package, "install", package.name, data, "nothing", doubts)
 
 
-def _list_opened(package: Package, installs, opened: Mapping[str, At]) -> Iterator[Diagnostic]:
+def _list_opened(
+    package: Package, installs, opened: Mapping[str, At], ended: tuple[Doubt, ...]
+) -> Iterator[Diagnostic]:
     """Launch files and data that something of the workspace opens, and launch files of ROS 2, that no rule puts into
-    the share folder at the path by which they are opened."""
+    the share folder at the path by which they are opened. ended: of list_install_doubts()."""
     missing: dict[str, tuple[str, str, str]] = {}
     catkin = package.build_type == "catkin"
     places = list_places(package, installs)
@@ -122,7 +133,7 @@ def _list_opened(package: Package, installs, opened: Mapping[str, At]) -> Iterat
         data = {"file": name, "share": share, "opener": opener}
         # ROS 1 finds all of it in the source space too; what is opened may be opened on request alone.
         doubts = () if kind.startswith("launch") and not catkin else (Doubt.DISTURBS,)
-        yield Diagnostic(at, folder, package.name, data, kind, doubts, together=_FOLDERS)
+        yield Diagnostic(at, folder, package.name, data, kind, (*doubts, *ended), together=_FOLDERS)
 
 
 # What keeps an empty folder in a repository, and what a program that has its state in a folder leaves there.
@@ -150,8 +161,10 @@ def _find_launch_file(package: Package, installs) -> str:
         return ""  # what comes after a command that cannot be followed is not known
     if any(is_installed(installs, path) for path in files):
         return ""
-    programs = package.build.installed_targets
     catkin = package.build_type == "catkin"
+    # What ROS 2 starts has to be installed, which missing-install tells where it is not.
+    made = () if catkin else (target.output_name or target.name for target in package.build.targets)
+    programs = package.build.installed_targets.union(made)
     siblings = catkin and any(i.kind == "directory" and i.destination.split("/")[0] == "share" for i in installs)
     for use in package.linked.references:
         path, r = use.at.path, use.reference

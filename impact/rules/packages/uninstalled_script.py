@@ -7,6 +7,11 @@ What it does
 Why it breaks
     Everything works from the source tree (catkin's devel space, symlinked installs), and the installed robot lacks it.
 
+Severity
+    warning for what launch files or scripts start, and for nodes and commands (programs without an ending) that are not
+    called like tools of developers; note for other scripts beside installed programs, and in ROS 1 where the distro has
+    ended, since nothing is released into it any more.
+
 Example
     install(PROGRAMS scripts/drive DESTINATION lib/${PROJECT_NAME})     # and a launch file starts scripts/steer
 
@@ -19,14 +24,15 @@ Not reported
 """
 
 import posixpath
+import re
 from collections import Counter
 from collections.abc import Collection, Mapping
 from itertools import chain
 
 from ....edges.groups import group_pairs
 from ...model.package import find_folder_role
-from ..vocabulary import At, Diagnostic, Package, TargetView, Text, Together, rule
-from .install_rules import is_installed, list_references, read_installs
+from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, Together, rule
+from .install_rules import is_installed, list_install_doubts, list_references, read_installs
 
 _ONCE = (Together("not installed"),)
 _OF_CATKIN = "catkin_install_python(PROGRAMS ...)"
@@ -35,6 +41,8 @@ _OF_PROGRAMS = frozenset(("bin", "nodes", "scripts"))
 _OF_NODES = {1: frozenset(("rospy", "rqt_gui")), 2: frozenset(("rclpy", "rqt_gui"))}
 # What a program imports that a generation of ROS does not have, as before it was ported.
 _OF_OTHERS = {1: "rclpy", 2: "rospy"}
+# How tools are called that their developers run from the sources.
+_FOR_DEVELOPERS = re.compile(r"(?i)(?:\A|[/_-])(?:bench(?:mark)?s?|calibrat\w*|debug|experiments?)(?=[/_.-]|\Z)")
 
 
 @rule(
@@ -54,6 +62,7 @@ def uninstalled_script(view: TargetView, package: Package):
     programs = [item for i in installs if i.kind == "programs" for item in i.items]
     imported = group_pairs((use.at.path, use.module.partition(".")[0]) for use in package.linked.imports)
     folders, others = {posixpath.dirname(item) for item in programs}, {posixpath.basename(item) for item in programs}
+    runs = {path for path, modules in imported.items() if not _OF_NODES[view.target.ros].isdisjoint(modules)}
     nodes = _list_nodes(package, installs, view.target.ros, imported, folders)
     kinds = Counter((posixpath.dirname(item), posixpath.splitext(item)[1]) for item in programs)
     found: dict[str, list[Diagnostic]] = {"script": [], "node": [], "beside": []}
@@ -68,7 +77,10 @@ def uninstalled_script(view: TargetView, package: Package):
             kind = "script" if name in scripts else "beside" if beside else "node"
             of_catkin = package.build_type == "catkin" and path not in package.linked.shells
             data = {"command": _OF_CATKIN if of_catkin else "install(PROGRAMS ... DESTINATION lib/${PROJECT_NAME})"}
-            found[kind].append(Diagnostic(At(path, 1), name, package.name, data, kind, together=_ONCE))
+            inside = package.strip_path(path)
+            sure = (node or "." not in name or path in runs) and not _FOR_DEVELOPERS.search(inside)
+            doubts = (kind == "script" or sure or Doubt.UNCHECKED, *list_install_doubts(view, package))
+            found[kind].append(Diagnostic(At(path, 1), name, package.name, data, kind, doubts, together=_ONCE))
     yield from chain.from_iterable(found.values())  # the first of them is the warning
 
 

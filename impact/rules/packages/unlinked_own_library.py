@@ -31,6 +31,7 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together,
 
 @rule(
     severity="warning",
+    preview=True,
     texts={
         "library": Text(
             "`{target}` uses `{function}` but does not link `{subject}`, which defines it",
@@ -54,6 +55,8 @@ def unlinked_own_library(view: TargetView, package: Package):
     known = {name for f in package.build.found for name in (f.name, f.prefix)} | {"catkin"}
     seen = set()
     for source, other, function in package.linked.own_calls:
+        if other.endswith(".in"):
+            continue  # what CMake makes of it is compiled
         definers = set(compiling.get(other, ()))
         for name in compiling.get(source, ()):
             target = targets[name]

@@ -62,8 +62,9 @@ def unreleased_package(view: TargetView, package: Package):
         seen.add(name)
         last = target.find_last_distro(name)
         waits = (testing := target.find_testing()) is not None and testing.find_version(name) is not None
-        before = [day for day, version in target.list_releases(name) if day <= target.date and version is None]
-        kind = "waiting" if waits else "dropped" if before else "later" if last == target.distro else "never"
+        releases = tuple(target.list_releases(name))
+        before = [day for day, version in releases if day <= target.date and version is None]
+        kind = "waiting" if waits else "dropped" if before else "later" if releases else "never"
         listing = view.find_listing(name)
         listed = listing[0] if listing is not None else ""
         yield Diagnostic(

@@ -11,7 +11,8 @@ Why it breaks
 
 Severity
     error where the build farm, which installs no dependencies to run, lacks what CMake or the compiler needs; warning;
-    note where what is needed to run is declared for tests.
+    note where what is needed to run is declared for tests, and for distros that have ended: nothing is released into
+    them any more, and whoever builds from source has all that is declared.
 
 Example
     <test_depend>moveit_ros_planning</test_depend>      # and CMakeLists.txt finds it outside BUILD_TESTING
@@ -24,7 +25,17 @@ Not reported
     known to have a shared library.
 """
 
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule, translate_tag
+from ..vocabulary import (
+    Diagnostic,
+    Doubt,
+    Package,
+    TargetView,
+    Text,
+    Together,
+    list_ended_doubts,
+    rule,
+    translate_tag,
+)
 from .clean_machine import collect_chance_doubts
 from .dependency_kinds import fix_kind, list_wrong_kinds
 
@@ -61,6 +72,7 @@ def wrong_dependency_kind(view: TargetView, package: Package):
             kind = "build, for tests" if wrong.kinds == {"test"} else f"build, {others}"
         elif wrong.kinds == {"test"}:
             kind, doubts, together = "run, for tests", (Doubt.DISPENSABLE,), ()
+        doubts = (*doubts, *list_ended_doubts(view))
         tag = "depend" if wrong.lacking == "build" else "exec_depend"
         fix = fix_kind(view, package, wrong.name, tag, wrong.kinds)
         data = {"tag": translate_tag(tag, package.manifest.format)[0]}

@@ -164,6 +164,8 @@ def check_version(target: "DistroTarget", package: str, request: str, exact: boo
     if not known.library and target.platform not in CHANNELS and target.find_version(package) is not None:
         return None  # a released package's own; conda's channels build libraries that the distro releases too
     versions = target.list_library_versions(name_library(package))
+    if known.library == "python" and parse(request)[:1] != parse(versions[0] if versions else "")[:1]:
+        return None  # Python 2 may be there beside it
     fitting = (version for version in versions if _accepts_version(version, request, exact, known.same_major))
     found = next(fitting, None)
     return VersionAnswer(found is not None, found or versions[0]) if versions else None

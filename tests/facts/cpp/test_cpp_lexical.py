@@ -4,7 +4,7 @@ import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.facts.cpp.lexical import CppFile, extract
+from rosimpact.impact.facts.cpp.lexical import CppFile, extract, scan
 
 
 def conditions_of(item):
@@ -322,3 +322,19 @@ def test_never_raises_on_pieces(text):
 )
 def test_a_variable_of_a_type(code, expected):
     assert ("arm::Hand" in extract(code.encode()).variables) is expected
+
+
+@pytest.mark.parametrize(
+    ("text", "blanked"),
+    [
+        ("A_DEPRECATED_MSG(please use std::this_thread::sleep_for instead)\nvoid nap();", True),
+        ("A_DEPRECATED(use std::this_thread::sleep_for for this)\nvoid nap();", True),
+        ("A_DEPRECATED(std::this_thread::sleep_for(1));", False),
+        ("A_DEPRECATED(inline std::this_thread::id x);", False),
+        ("A_MSG(please use std::this_thread::sleep_for instead)", False),
+    ],
+)
+def test_what_a_macro_of_deprecation_advises_is_no_code(text, blanked):
+    visible = scan(text.encode()).visible
+    assert ("std::this_thread" not in visible) == blanked
+    assert len(visible) == len(text)

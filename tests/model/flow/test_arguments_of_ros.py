@@ -90,3 +90,50 @@ def test_how_many_arguments_a_program_of_cpp_has(tmp_path, written, asked, argum
     }
     found = name_started(tmp_path, files, "p/launch/a.launch" if one else "p/launch/a.launch.xml")
     assert {name for name, how in found if how in ("literal", "given")} == expected
+
+
+DESK = """
+    import rclpy
+    from rclpy.node import Node
+    from std_msgs.msg import Empty
+
+    class Desk(Node):
+        def __init__(self):
+            super().__init__("desk")
+            self.declare_parameter("said", "/default")
+            self.create_publisher(Empty, self.get_parameter("said").value, 1)
+
+    def main():
+        rclpy.init()
+        rclpy.spin(Desk())
+"""
+STARTED = """
+    from launch import LaunchDescription
+    from launch_ros.actions import Node
+
+    def generate_launch_description():
+        given = ask()
+        return LaunchDescription([Node(package="desk", executable="desk", ros_arguments=[GIVEN])])
+"""
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        ("'-p', 'said:=/a'", {("/a", "launch")}),
+        ("'-p', 'said:=/' + given", {("/<ask()>", "partly")}),
+        ("'-p', 'other:=' + given", {("/default", "default")}),
+    ],
+)
+def test_a_parameter_among_the_arguments_may_be_known_in_part(tmp_path, given, expected):
+    files = {
+        "desk/package.xml": manifest("desk", "ament_python"),
+        "desk/setup.py": """
+            from setuptools import setup
+            setup(name="desk", packages=["desk"], entry_points={"console_scripts": ["desk = desk.desk:main"]})
+        """,
+        "desk/desk/__init__.py": "",
+        "desk/desk/desk.py": DESK,
+        "desk/launch/desk.launch.py": STARTED.replace("GIVEN", given),
+    }
+    assert name_started(tmp_path, files, "desk/launch/desk.launch.py") == expected

@@ -58,6 +58,13 @@ DEAD = {("/fk", "something calls `Mover.__prepare`"), ("/lazy", "something calls
         ('getattr(self.mover, "compute")()', {("/fk", ""), ("/lazy", "something calls `Mover.lazy`")}),
         ("self.mover.lazy.call(1)", {("/fk", "something calls `Mover.__prepare`"), ("/lazy", "")}),
         ("while not self.mover.lazy: pass", {("/fk", "something calls `Mover.__prepare`"), ("/lazy", "")}),
+        # A text names a method only where methods are looked up by texts.
+        ("self.state = 'compute'", DEAD),
+        ("if self.state == 'compute' or 'lazy' in self.state: pass", DEAD),
+        ("self.kin.send('compute')", DEAD),
+        ("self.state = 'compute'; getattr(self.mover, self.state)()", {("/fk", ""), ("/lazy", "")}),
+        ("eval('self.mover.compute()')", {("/fk", ""), ("/lazy", "something calls `Mover.lazy`")}),
+        ("self.made = {'run': self.mover.compute}", {("/fk", ""), ("/lazy", "something calls `Mover.lazy`")}),
         ("given(self.mover).compute()", {("/fk", ""), ("/lazy", "something calls `Mover.lazy`")}),
     ],
 )

@@ -77,3 +77,44 @@ def test_services_of_the_interfaces_of_a_node(tmp_path):
     services = {(one.role, one.topic) for one in found.endpoints if one.role != "publisher"}
     assert services == {("client", "/ask"), ("server", "/serve")}
     assert not found.coverage.missed
+
+
+@pytest.mark.parametrize(
+    ("written", "missed"),
+    [
+        ('make = self.create_publisher\nmake(None, "a", 1)', []),
+        ('make = self.create_publisher\nshort = lambda name: make(None, name, 1)\nshort("a")', []),
+        ("make = self.create_publisher", ["create_publisher"]),
+        ('make = self.create_publisher if short else self.create_client\nmake(None, "a")',
+         ["create_publisher", "create_client"]),
+        ("hand_on(partial(self.create_timer, 3))", ["create_timer"]),
+        ("self.make = self.create_publisher", ["create_publisher"]),
+        ("hand_on(self.create_publisher)", ["create_publisher"]),
+        ("hand_on(self.create)", []),
+    ],
+)
+def test_methods_that_are_handed_on(tmp_path, written, missed):
+    lines = written.replace("\n", "\n                ")
+    python = f"""
+        import rclpy
+        from rclpy.node import Node
+
+        class Ship(Node):
+            def fill(self):
+                {lines}
+    """
+    files = {"boat/package.xml": manifest("boat", "ament_python"), "boat/boat/ship.py": python}
+    coverage = graph_on_disk(tmp_path, files).coverage
+    assert [one.written for one in coverage.missed] == missed
+
+
+@pytest.mark.parametrize(("build", "missed", "unresolved"), [("ament_cmake", ["advertise"], 0), ("catkin", [], 1)])
+def test_objects_of_classes_that_are_not_here(tmp_path, build, missed, unresolved):
+    """In a workspace of ROS 2 they are none of roscpp's."""
+    files = make_files('other::Handle thing; thing.advertise<other::Load>("a");')
+    files["ship/package.xml"] = manifest("ship", build)
+    if build == "catkin":
+        files["ship/CMakeLists.txt"] = files["ship/CMakeLists.txt"].replace("ament_package", "catkin_package")
+    coverage = graph_on_disk(tmp_path, files).coverage
+    assert [one.written for one in coverage.missed] == missed
+    assert len([one for one in coverage.unresolved if one.what == "call"]) == unresolved
