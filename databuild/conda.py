@@ -65,14 +65,9 @@ _VERSION = re.compile(r"\d+(?:\.\d+)*")
 _SET = re.compile(r"(?:\{%-?\s*set\s+version\s*=\s*|^\s{2}version:\s*)[\"']?(\d+(?:[.-]\d+)+)[\"']?", re.MULTILINE)
 
 
-def read_pins(text: str) -> dict[str, str]:
-    """What a conda_build_config.yaml pins for a build on Linux (x86_64), by name, as written; names with several
-    values that such a build may have are left out. Selectors that ask anything but the platform do not hold."""
-    return {name: found[0] for name, found in _read_values(text).items() if len(set(found)) == 1}
-
-
-def _read_values(text: str) -> dict[str, list[str]]:
-    """The values that such a build may have, by name."""
+def read_pins(text: str) -> dict[str, list[str]]:
+    """What a conda_build_config.yaml pins for a build on Linux (x86_64), by name, as written: all values that such a
+    build may have. Selectors that ask anything but the platform do not hold."""
     values: dict[str, list[str]] = {}
     name = ""
     for line in text.splitlines():
@@ -277,14 +272,14 @@ def build(
         library = _name_recipe(clone, recipe["name"], of_pin) if recipe and clone.name != PINNING else ""
         if library:
             recipes[library] = read_releases(clone)
-    pinned = _read_channel(clones / PINNING, {"recipe/conda_build_config.yaml": _read_values}, of_pin, recipes)
+    pinned = _read_channel(clones / PINNING, {"recipe/conda_build_config.yaml": read_pins}, of_pin, recipes)
     # Rows of what was never pinned are those of its recipe.
     releases = {name: rows for name, rows in kept.items() if name not in pinned} | recipes
     table: dict[str, dict[str, dict[str, str]]] = {CHANNEL: {name: dict(rows) for name, rows in kept.items()}}
     for name in pinned.keys() | recipes:
         table[CHANNEL][name] = _fill_unpinned(pinned.get(name, {}), recipes.get(name, {}))
     for clone in robostack:
-        files = {"conda_build_config.yaml": _read_values} | dict.fromkeys(_MUTEX, _read_held)
+        files = {"conda_build_config.yaml": read_pins} | dict.fromkeys(_MUTEX, _read_held)
         found = _read_channel(clone, files, of_pin, releases)
         _move_to_branches(found, read_branches(clone, files), partial(_find_held, files, of_pin, releases))
         table[clone.name.removeprefix(_ROBOSTACK)] = {n: _fill_unpinned(rows, {}) for n, rows in found.items()}

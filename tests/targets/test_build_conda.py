@@ -25,7 +25,8 @@ from rosimpact.databuild.git import BuildError
     ],
 )
 def test_pins_of_a_linux_build(text, pins):
-    assert conda.read_pins(text) == pins
+    found = conda.read_pins(text)
+    assert {name: values[0] for name, values in found.items() if len(set(values)) == 1} == pins
 
 
 @pytest.mark.parametrize(

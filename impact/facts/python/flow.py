@@ -347,7 +347,7 @@ class PythonStatements(Expressions):
     def read_Expr(self, node: ast.Expr) -> Leaving:
         value = node.value
         if value.__class__ is ast.Call:
-            return JUMPS if self.call(value)[0] in EXITS else STAYS  # type: ignore[arg-type]
+            return JUMPS if self.call(value).text in EXITS else STAYS  # type: ignore[arg-type]
         self.visit(value)
         return JUMPS if node.lineno in self.raised and value.__class__ is ast.Tuple else STAYS
 
@@ -405,7 +405,7 @@ class PythonStatements(Expressions):
     def read_Delete(self, node: ast.Delete) -> Leaving:
         for target in node.targets:
             if target.__class__ is ast.Attribute or target.__class__ is ast.Subscript:
-                path, local = self.reach(target)
+                path, local, _ = self.reach(target)
                 if local:
                     self.touch(path, "write")
         return STAYS
@@ -428,7 +428,7 @@ class PythonStatements(Expressions):
         found: list[str] = []
         for decorator in node.decorator_list:
             if decorator.__class__ is ast.Call:
-                found.append(self.call(decorator)[0])
+                found.append(self.call(decorator).text)
             else:
                 found.append(self.reach(decorator)[0])
         return tuple(found)

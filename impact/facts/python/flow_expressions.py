@@ -67,8 +67,6 @@ class Expressions(SourceText):
         self.class_bodies: dict[str, ClassBody] = {}
         # Names that a class's own body knows without its object.
         self.own: set[str] = set()
-        # The call on whose result what was read last is asked.
-        self.called: FlowExpr | None = None
         self.constants: list[DataMember] = []
         # Functions whose bodies are still to be read, since they see all variables of the one they stand in.
         self.waiting: list[tuple[Body, list[ast.stmt]]] = []
@@ -200,9 +198,9 @@ class Expressions(SourceText):
 
     visit_YieldFrom = visit_Yield
 
-    def reach(self, node) -> tuple[str, bool]:
-        """The path that an expression names and whether it begins at a variable of the function; what stands inside it,
-        such as an index or a call, is visited. `called` is then the call that the path begins with, None for none."""
+    def reach(self, node) -> tuple[str, bool, FlowExpr | None]:
+        """The path that an expression names, whether it begins at a variable of the function, and the call that it
+        begins with, None for none; what stands inside it, such as an index or a call, is visited."""
         parts: list[str] = []
         while True:
             cls = node.__class__
@@ -219,7 +217,7 @@ class Expressions(SourceText):
                 node = node.value
             else:
                 break
-        local = False
+        local, called = False, None
         if cls is ast.Name:
             head = node.id
             if head == self.this:
@@ -229,19 +227,16 @@ class Expressions(SourceText):
             elif head in self.own:
                 head = "this." + head
         elif cls is ast.Call:
-            callee, given = self.call(node)
-            head = callee + "()"
-            self.called = FlowExpr("call", callee, given, self.called)
-            return ".".join((head, *reversed(parts))), False
+            called = self.call(node)
+            head = called.text + "()"
         else:
             self.visit(node)
             head = "()"
-        self.called = None
         if not parts:
-            return head, local
+            return head, local, called
         parts.append(head)
         parts.reverse()
-        return ".".join(parts), local
+        return ".".join(parts), local, called
 
     def follow(self, node, use: str, target: str = "") -> FlowExpr:
         """An expression. use: the Access that it is if it is a path, `read` for none; target: what it is kept in,
@@ -260,7 +255,7 @@ class Expressions(SourceText):
                 return self.make_member("this." + name, name)
             return FlowExpr("function" if self.is_function(name) else "name", name)
         if cls is ast.Attribute:
-            path, local = self.reach(node)
+            path, local, called = self.reach(node)
             if local:
                 self.touch(path, use)
                 return FlowExpr("name", path)
@@ -269,7 +264,7 @@ class Expressions(SourceText):
                 return self.make_member(path, name)
             known = self.class_bodies.get(head)
             kind = "function" if known is not None and name in known.callbacks else "name"
-            return FlowExpr(kind, path, (), self.called)
+            return FlowExpr(kind, path, (), called)
         if cls is ast.Call:
             return self.walk_call(node, target)
         maker = _VALUES.get(cls)
@@ -494,7 +489,7 @@ class Expressions(SourceText):
                     self.locals.add(name)
             self.assignments.append(Assignment(path, value, line, self.guard, type, operator))
         elif cls is ast.Attribute or cls is ast.Subscript:
-            path, local = self.reach(target)
+            path, local, _ = self.reach(target)
             if local:
                 self.touch(path, "write")
             elif path.startswith("this.") and path.count(".") == 1 and operator == "=" and self.body.cls is not None:
@@ -641,7 +636,8 @@ class Expressions(SourceText):
             and func.value.value.__class__ is str  # type: ignore[attr-defined]
         ):
             return self.walk_format_call(node)
-        callee, arguments = self.call(node, target)
+        called = self.call(node, target)
+        callee, arguments = called.text, called.parts
         if callee in _PARTIAL and arguments:
             return FlowExpr("bind", "", arguments)
         last = callee.rpartition(".")[2].lstrip("_")
@@ -649,21 +645,20 @@ class Expressions(SourceText):
             return FlowExpr("make", callee, arguments)
         literal = func.value if func.__class__ is ast.Attribute else None  # type: ignore[attr-defined]
         # `"/".join(names)`
-        told = literal.__class__ is ast.Constant and literal.value.__class__ is str  # type: ignore[union-attr]
-        receiver = self.make_constant(literal) if told else self.called  # type: ignore[arg-type]
-        return FlowExpr("call", callee, arguments, receiver)
+        if literal.__class__ is ast.Constant and literal.value.__class__ is str:  # type: ignore[union-attr]
+            return FlowExpr("call", callee, arguments, self.make_constant(literal))  # type: ignore[arg-type]
+        return called
 
-    def call(self, node: ast.Call, target: str = "") -> tuple[str, tuple[FlowExpr, ...]]:
-        """Records a call, with what it is given and what it is called on; gives its callee and arguments. `called` is
-        then the call that it is called on what it gives, None for none."""
+    def call(self, node: ast.Call, target: str = "") -> FlowExpr:
+        """Records a call, with what it is given and what it is called on, and gives it. Its receiver is the call that
+        gives what it is called on, None for none."""
         func = node.func
         cls = func.__class__
         line = node.lineno
         reading, keeping, kept = False, -1, ""
-        called = None
+        receiver = None
         if cls is ast.Attribute:
-            path, local = self.reach(func.value)  # type: ignore[attr-defined]
-            called = self.called
+            path, local, receiver = self.reach(func.value)  # type: ignore[attr-defined]
             attribute = func.attr  # type: ignore[attr-defined]
             callee = f"{path}.{attribute}"
             if local:
@@ -679,8 +674,7 @@ class Expressions(SourceText):
                     reading = name in _READING
             callee = self.find_bound_method(name) or (name if name != self.this else "this")
         else:
-            callee, _ = self.reach(func)
-            called = self.called
+            callee, _, receiver = self.reach(func)
         arguments: list[FlowExpr] = []
         for place, argument in enumerate(node.args):
             inside = argument.__class__
@@ -710,8 +704,7 @@ class Expressions(SourceText):
             self.calls.append(
                 FlowCall(callee, given, line, column, self.guard, "", "" if returned else target, returned)
             )
-        self.called = called
-        return callee, given
+        return FlowExpr("call", callee, given, receiver)
 
 
 def make_formatted(value: FlowExpr, spec: str) -> FlowExpr:

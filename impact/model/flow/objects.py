@@ -14,7 +14,7 @@ from .contexts import Contexts
 from .graph import Role
 from .names import RemappingRule, join_name, normalise
 from .node_options import GivenPiece, NodeOptions
-from .reaching import LOOPS
+from .reaching import find_last_write, reaches
 from .types import Cls, FlowType
 from .values import NAMESPACE, FlowValues
 
@@ -309,13 +309,11 @@ class _Trace:
         results = self._select_running(code.list_results(variable))
         own = variable.kind == "member" and text.startswith("this.") and "." not in text.removeprefix("this.")
         if at is not None and (own or variable.kind == "local"):
-            last = find_last_write(fn, at, [*written, *results])
-            if own:
-                # Another function may have written it before this one has.
-                written = [row for row in written if row[0] is fn or last is None]
-                results = [row for row in results if row[0] is fn or last is None]
-            written = [row for row in written if reaches(row, fn, at, last)]
-            results = [row for row in results if reaches(row, fn, at, last)]
+            last = find_last_write(fn, at, (*written, *results))
+            # A variable may be written by a function inside at any time; a member is what the function has given it.
+            elsewhere = not own or last is None
+            written = [row for row in written if (elsewhere if row[0] is not fn else reaches(fn, row[1], at, last))]
+            results = [row for row in results if (elsewhere if row[0] is not fn else reaches(fn, row[1], at, last))]
         for writer, each in written:
             made = make_key(writer, each.line)
             inner = around if variable.kind != "member" else self._find_around(writer, around)
@@ -371,33 +369,6 @@ class _Trace:
             return rows
         self.rests_on.update(fn for fn, _ in rows)
         return [row for row in rows if row[0] in self._functions] or rows
-
-
-def find_last_write(
-    fn: Fn, at: FlowCall | Assignment, rows: Sequence[tuple[Fn, FlowCall | Assignment]]
-) -> FlowCall | Assignment | None:
-    """Of what writes a variable, that which surely does so last before a statement of a function; None for
-    none."""
-    around = {-1, *fn.list_guards_around(at.guard)}
-    sure = [each for writer, each in rows if writer is fn and each.line < at.line and each.guard in around]
-    return max(sure, key=lambda each: each.line, default=None)
-
-
-def reaches(
-    row: tuple[Fn, FlowCall | Assignment], fn: Fn, at: FlowCall | Assignment, last: FlowCall | Assignment | None
-) -> bool:
-    """Whether what writes a variable may be what a statement of a function meets: nothing surely comes between,
-    also where a loop comes back to it. last: as find_last_write() has it for all that write the variable."""
-    writer, each = row
-    if writer is not fn:
-        return True
-    if last is not None and each.line < last.line:
-        return False
-    if each.line <= at.line:
-        return True
-    kept = fn.list_guards_around(last.guard) if last is not None else ()
-    turns = set(fn.list_guards_around(at.guard)).intersection(fn.list_guards_around(each.guard)).difference(kept)
-    return any(fn.facts.guards[guard].kind in LOOPS for guard in turns)
 
 
 def make_key(fn: Fn, line: int) -> str:

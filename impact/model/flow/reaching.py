@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
+from ...facts.flow import Assignment, FlowCall
 from .code import Fn
 from .graph import How
 from .variable_tests import VariableTest, read_variable_test
@@ -168,6 +169,30 @@ class ReachingValues:
                 if h.stays or any(self._is_inside(h.guard, each) for each in branches)
                 or not (self.is_sure(guard) or self._is_inside(h.guard, guard))
             ]  # fmt: skip
+
+
+def find_last_write(
+    fn: Fn, at: FlowCall | Assignment, rows: Iterable[tuple[Fn, FlowCall | Assignment]]
+) -> FlowCall | Assignment | None:
+    """Of what writes a variable, with the functions that do, that which surely does so last before a statement of a
+    function; None for none."""
+    around = {-1, *fn.list_guards_around(at.guard)}
+    sure = [each for writer, each in rows if writer is fn and each.line < at.line and each.guard in around]
+    return max(sure, key=lambda each: each.line, default=None)
+
+
+def reaches(
+    fn: Fn, written: FlowCall | Assignment, at: FlowCall | Assignment, last: FlowCall | Assignment | None
+) -> bool:
+    """Whether what a function writes to a variable may be what another of its statements meets: nothing surely comes
+    between, also where a loop comes back to it. last: what find_last_write() gives for all that write the variable."""
+    if last is not None and written.line < last.line:
+        return False
+    if written.line <= at.line:
+        return True
+    kept = fn.list_guards_around(last.guard) if last is not None else ()
+    turns = set(fn.list_guards_around(at.guard)).intersection(fn.list_guards_around(written.guard)).difference(kept)
+    return any(fn.facts.guards[guard].kind in LOOPS for guard in turns)
 
 
 def _may_hold(test: VariableTest, value: FlowValue) -> bool:

@@ -517,15 +517,12 @@ class _Launch(Filling):
                     settings.append(SettingFile(text, entries, self.locate_line(line), source=source))
                 option = ""
             else:
-                if option in ("-p", "--param", "--params-file"):
-                    # What it sets is not known, or not to what.
-                    name_known, given, shown = text.shown.partition(":=")
-                    known = bool(given) and option != "--params-file" and "<" not in name_known
-                    place = self.locate_line(line)
-                    unknown = LaunchText(None, shown, text.reasons)
-                    settings.append(
-                        LaunchParameter(name_known, unknown, place) if known else SettingFile(text, None, place)
-                    )
+                old, given, new = text.shown.partition(":=")
+                if option in ("-p", "--param") and given and "<" not in old:
+                    unknown = LaunchText(None, new, text.reasons)
+                    settings.append(LaunchParameter(old, unknown, self.locate_line(line)))
+                elif option in ("-p", "--param", "--params-file"):  # what it sets is not known
+                    settings.append(SettingFile(text, None, self.locate_line(line)))
                 option = ""
         return remaps, settings, name, namespace
 
