@@ -158,10 +158,11 @@ def read_workspace(
         )
         discovered = discover(tree, extraction)
         ros = detect_generation(discovered, extraction)
-        versions = list_versions(discovered, extraction)
+        packages = list_versions(discovered, extraction)
+        versions = [(package.name, package.version) for package in packages]
         targets = [
             Chosen(target.follow_release(versions), reason)
-            for target, reason in choose_targets(options.targets, config, ros, tree)
+            for target, reason in choose_targets(options.targets, config, ros, tree, packages=packages)
         ]
         yield Read(tree, store, extraction, discovered, ros, targets, config, load_names)
 

@@ -22,6 +22,7 @@ from ...edges.patterns import PatternError, compute_cost, matches
 from ..facts.colcon import ColconFile
 from ..facts.extract import ExtractedFacts
 from ..facts.manifest import Manifest
+from ..targets.default_distros import StatedVersion
 from ..tree import PathProblem, Tree, normalize_path
 
 _FILES = frozenset(
@@ -419,10 +420,14 @@ def find_manifest(extraction: ExtractedFacts, path: str) -> Manifest | None:
     return facts if isinstance(facts, Manifest) else None
 
 
-def list_versions(discovered: Discovered, extraction: ExtractedFacts) -> list[tuple[str, str]]:
+def list_versions(discovered: Discovered, extraction: ExtractedFacts) -> list[StatedVersion]:
     """The packages of a tree, each with the version that its manifest states."""
-    manifests = ((place.name, find_manifest(extraction, place.manifest_path)) for place in discovered.packages)
-    return [(name, manifest.version) for name, manifest in manifests if manifest is not None]
+    manifests = ((place, find_manifest(extraction, place.manifest_path)) for place in discovered.packages)
+    return [
+        StatedVersion(place.path, place.repository, place.name, manifest.version)
+        for place, manifest in manifests
+        if manifest is not None
+    ]
 
 
 def detect_generation(discovered: Discovered, extraction: ExtractedFacts) -> int:

@@ -81,13 +81,32 @@ def _load_known_distros(data: Snapshot) -> dict[str, KnownDistro]:
 
 def list_releases(package: str) -> frozenset[tuple[int, str]]:
     """(ROS generation, version) of every release of a package in any distro."""
-    rows = snapshots.load_snapshot().fetch(
-        "SELECT DISTINCT d.ros, r.version, n.names FROM home h JOIN package p ON p.id = h.package"
-        " JOIN distro d ON d.id = h.distro JOIN release r ON r.repository = h.repository AND r.distro = h.distro"
-        " JOIN packages n ON n.id = r.packages WHERE p.name = ? AND r.version IS NOT NULL",
+    return frozenset((ros, version) for ros, _, _, version in _fetch_releases(package, snapshots.load_snapshot()))
+
+
+def find_release(package: str, version: str, data: Snapshot) -> tuple[str, tuple[str, ...]] | None:
+    """The repository that released a package last, as rosdistro calls it, and the distros that released it in this
+    version; None for a package that no distro has."""
+    rows = _fetch_releases(package, data)
+    if not rows:
+        return None
+    return rows[-1][2], tuple(dict.fromkeys(distro for _, distro, _, found in rows if found == version))
+
+
+def _fetch_releases(package: str, data: Snapshot) -> list[tuple[int, str, str, str]]:
+    """(ROS generation, distro, repository, version) of every release of a package in any distro, the oldest first."""
+    rows = data.fetch(
+        "SELECT d.ros, d.name, o.name, r.version, n.names FROM home h JOIN package p ON p.id = h.package"
+        " JOIN distro d ON d.id = h.distro JOIN repository o ON o.id = h.repository"
+        " JOIN release r ON r.repository = h.repository AND r.distro = h.distro"
+        " JOIN packages n ON n.id = r.packages WHERE p.name = ? AND r.version IS NOT NULL ORDER BY r.ts",
         (package,),
     )
-    return frozenset((ros, _strip_packaging(version)) for ros, version, names in rows if package in names.split(" "))
+    return [
+        (ros, distro, repository, _strip_packaging(version))
+        for ros, distro, repository, version, names in rows
+        if package in names.split(" ")
+    ]
 
 
 def format_day(ts: int) -> str:
