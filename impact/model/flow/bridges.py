@@ -8,7 +8,7 @@ image_bridge.cpp of ros_gz_image.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from msgspec import structs
@@ -144,11 +144,8 @@ def _list_carried(instance: Instance, sources: InWorkspace) -> Iterator[Carried]
 
 def _list_own_words(started: Started) -> Iterator[str]:
     """The arguments that are no arguments of ROS, as far as they are known."""
-    words: Sequence[LaunchText] = started.arguments
-    if started.kind == "process":
-        words = words[4 if [word.value for word in words[:2]] == ["ros2", "run"] else 1 :]
     inside = False
-    for word in words:
+    for word in started.arguments:
         if word.value in ("--ros-args", "--"):
             inside = word.value == "--ros-args"
         elif not inside and word.shown[:1] != "-":

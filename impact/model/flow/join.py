@@ -387,9 +387,8 @@ class Join:
         missing = [self._explain_outside(include) for include in launch.outside]
         for start in launch.started:
             at = self._locate(start.at)
-            if start.kind == "process":
-                if not start.package.value or not self._select_fitting(start):
-                    missing.append(Unresolved("started command", "it may be a node", *at, start.executable.shown))
+            if start.kind == "process" and not (start.package.value and self._select_fitting(start)):
+                missing.append(Unresolved("started command", "it may be a node", *at, start.executable.shown))
                 continue
             what = start.plugin.value or start.executable.value
             if what is None:
@@ -1005,11 +1004,13 @@ class Join:
 
     def _list_closed(self, fn: Fn, place: int, owner: Owner) -> Iterator[str]:
         """The conditions around a place in a function, a guard's, that do not hold in a node as far as is known, or of
-        which that is not known though they ask for what a launch gives."""
+        which that is not known though they ask for what a launch gives, or may give in a file that is not known."""
         values = owner.limit_values() if isinstance(owner, Running) else self.values
+        is_unread = isinstance(owner, Running) and owner.instance is not None and owner.instance.is_unread
         for guard, decided in reversed(list(values.decide_guards(fn, place))):
-            asks_open = decided.asks_open and (guard.kind != "unless" or self._has_other_branch(fn, guard))
-            if decided.holds is False or (decided.holds is None and (decided.is_given or asks_open)):
+            asks_open = decided.asks_open or (is_unread and "default" in decided.hows)
+            asks_open = asks_open and (guard.kind != "unless" or self._has_other_branch(fn, guard))
+            if decided.holds is False or asks_open or (decided.holds is None and decided.is_given):
                 yield spell_condition(guard.kind, guard.text)
 
     @cache_method

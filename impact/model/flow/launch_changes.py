@@ -231,7 +231,7 @@ class _Side:
         inner: dict[str, dict[str, LaunchParameter]] = {}
         read: set[int] = set()
         for started in (*launched.started, *launched.outside):
-            if started.kind != "process":
+            if started.kind != "process" or id(started) in known:
                 found = self._describe_start(launched, started, known.get(id(started)))
                 names.append(found.name)
                 yield found

@@ -11,7 +11,7 @@ from ...facts.launch.actions import LaunchFile
 from ...facts.launch.parameter_files import ParameterFile
 from ...facts.launch.python import extract as extract_python
 from ..launch.follow import follow
-from ..launch.result import Launched, LaunchParameter, Remap, Started
+from ..launch.result import EMPTY, Launched, LaunchParameter, Remap, SettingFile, Started
 from ..launch.text import LaunchText
 from ..workspace import Workspace
 from .names import RemappingRule, join_name, make_open_part, remap_ros1_name, remap_ros2_name
@@ -152,7 +152,7 @@ class Instance(NamedTuple):
     """A node as a launch starts it. name: full. settings: values of its parameters; in ROS 1 of all on the parameter
     server, by their global names. uncertain: why its name, or whether it is started at all, is not sure. What is not
     known of names and values stands in brackets (`/<$ROBOT>/camera`). chosen: the settings that rest on the default of
-    a launch argument."""
+    a launch argument. is_unread: it is given a parameter file of which the content is not known."""
 
     started: Started
     name: str
@@ -160,6 +160,7 @@ class Instance(NamedTuple):
     remaps: tuple[Remap, ...]
     uncertain: tuple[str, ...]
     chosen: frozenset[str] = frozenset()
+    is_unread: bool = False
 
     def remap_name(self, name: str, ros: int, kind: str = "topic") -> str:
         """A name as the code has it, after the remappings of this start; full. It is known in part where a remapping
@@ -189,14 +190,18 @@ class Instance(NamedTuple):
 
 def make_instance(all_started: Launched, own_name: str, started: Started, own_namespace: str = "") -> Instance:
     """A start of a node whose code calls itself own_name, in own_namespace."""
-    name = _fill(started.name) or own_name
-    full = join_name("/" + (_fill(started.namespace) or own_namespace).lstrip("/"), name)
+    # A process may hold several nodes, each with rules of its own.
+    ruled = {one.old.value: one.new for one in reversed(started.remaps)}
+    name = _fill(started.name) or _fill(ruled.get(f"{own_name}:__node", EMPTY)) or own_name
+    namespace = _fill(started.namespace) or _fill(ruled.get(f"{own_name}:__ns", EMPTY)) or own_namespace
+    full = join_name("/" + namespace.lstrip("/"), name)
     one = started.generation == 1
     given = all_started.server if one else all_started.collect_parameters(started, full)
     settings = {key: _fill_setting(one, started) for key, one in given.items()}
     uncertain = (*started.conditions, *(r for r in (*started.name.reasons, *started.namespace.reasons) if r))
     chosen = frozenset(key for key, one in given.items() if one.text.chosen)
-    return Instance(started, full, settings, started.remaps, uncertain, chosen)
+    is_unread = any(isinstance(one, SettingFile) and one.entries is None for one in started.settings)
+    return Instance(started, full, settings, started.remaps, uncertain, chosen, is_unread)
 
 
 def _fill_setting(one: LaunchParameter, started: Started) -> str:

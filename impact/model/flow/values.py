@@ -514,7 +514,9 @@ class FlowValues:
                 return [("true", "launch")] if self._is_set(filling, inner) else None
             nonlocal asks_open
             found = [one for one in self._evaluate(value, fn, guard.line, inner) if not one.uncalled]
-            asks_open = asks_open or any(one.text is None and one.reason.startswith(NO_DEFAULT) for one in found)
+            asks_open = asks_open or any(
+                one.reason.startswith(NO_DEFAULT) if one.text is None else is_open(one.text) for one in found
+            )
             known: list[tuple[str, How]] = [
                 (one.text, one.how)
                 for one in found

@@ -22,6 +22,7 @@ from .fill import OF_RUNNING, ActionScope, ChangedFiles, Filling
 from .result import EMPTY, Launched, LaunchParameter, LaunchSources, Remap, SettingFile, ShareLine, Started
 from .text import (
     LaunchText,
+    list_either,
     make_either,
     make_unknown,
     parse_truth,
@@ -500,29 +501,24 @@ class _Launch(Filling):
                 continue
             elif word in ("-r", "--remap", "-p", "--param", "--params-file"):
                 option = word
-            elif option and word is not None:
-                old, _, new = word.partition(":=")
-                rule = parse_ros2_rule(word)
-                if option in ("-r", "--remap") and rule is not None:
-                    if rule.match in ("__node", "__name"):
-                        name = name or wrap(new)
-                    elif rule.match == "__ns":
-                        namespace = namespace or wrap(new)
-                    else:
-                        remaps.append(Remap(wrap(old), wrap(new), self.locate_line(line)))
-                elif option in ("-p", "--param"):
-                    settings.append(LaunchParameter(old, wrap(new), self.locate_line(line)))
-                elif option == "--params-file":
-                    entries, source = self.read_entries(word), self.find_source(word)
-                    settings.append(SettingFile(text, entries, self.locate_line(line), source=source))
+            elif option == "--params-file":
+                entries = self.read_entries(word) if word is not None else None
+                source = self.find_source(word) if word is not None else None
+                settings.append(SettingFile(text, entries, self.locate_line(line), source=source))
                 option = ""
-            else:
-                old, given, new = text.shown.partition(":=")
-                if option in ("-p", "--param") and given and "<" not in old:
-                    unknown = LaunchText(None, new, text.reasons)
-                    settings.append(LaunchParameter(old, unknown, self.locate_line(line)))
-                elif option in ("-p", "--param", "--params-file"):  # what it sets is not known
-                    settings.append(SettingFile(text, None, self.locate_line(line)))
+            elif option:
+                old, new = _split_rule(text)
+                rule = parse_ros2_rule(f"{old}:={new.value or 'open'}") if old else None
+                if option in ("-p", "--param"):
+                    at = self.locate_line(line)
+                    # Of one that is not known as a whole, what it sets is not known.
+                    settings.append(LaunchParameter(old, new, at) if old else SettingFile(text, None, at))
+                elif rule is not None and not rule.node and rule.match in ("__node", "__name"):
+                    name = name or new
+                elif rule is not None and not rule.node and rule.match == "__ns":
+                    namespace = namespace or new
+                elif rule is not None:
+                    remaps.append(Remap(wrap(old), new, self.locate_line(line)))
                 option = ""
         return remaps, settings, name, namespace
 
@@ -535,7 +531,7 @@ class _Launch(Filling):
     do_composable = start_ros2_node
 
     def do_process(self, action: Action) -> None:
-        words = tuple(self.fill(value) for value in action.list_values("command"))
+        words = tuple(word for value in action.list_values("command") for word in _split_words(self.fill(value)))
         package = executable = EMPTY
         rest = words
         if [w.value for w in words[:2]] == ["ros2", "run"] and len(words) >= 4:
@@ -555,7 +551,7 @@ class _Launch(Filling):
             namespace=namespace or EMPTY,
             remaps=tuple(remaps),
             settings=tuple(settings),
-            arguments=words,
+            arguments=rest,
         )
 
     def start_ros1_node(self, action: Action) -> None:
@@ -636,6 +632,27 @@ _STARTING = frozenset(
 )  # fmt: skip
 _OF_NODE = frozenset(("remap", "parameter", "parameter-file"))
 _DOING = collect_methods(_Launch, "do_")
+
+
+def _split_words(text: LaunchText) -> list[LaunchText]:
+    """The words of a part of a command, of which a shell may be given several as one."""
+    return [wrap(word) for word in text.value.split()] if text.value is not None else [text]
+
+
+def _split_rule(text: LaunchText) -> tuple[str, LaunchText]:
+    """What a rule `old:=new` is for, and what it gives; the former is empty where it is not known. Of one that is one
+    of several rules for the same, what it gives is one of theirs."""
+    every = [text.value] if text.value is not None else list_either(text.shown)
+    pairs = [one.partition(":=") for one in every]
+    old = pairs[0][0]
+    if "<" in old or any(not given or other != old for other, given, _ in pairs):
+        return "", text
+    if text.value is not None:
+        return old, wrap(pairs[0][2])
+    new = LaunchText(None, pairs[0][2], text.reasons)
+    for _, _, other in pairs[1:]:
+        new = make_either(new.shown, other, *text.reasons)
+    return old, new
 
 
 def _fill_open(name: LaunchText) -> str:

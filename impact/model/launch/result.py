@@ -94,8 +94,8 @@ class Started(NamedTuple):
 
     kind: `node`, `lifecycle`, `test`, `container`, `composable` (ROS 1: a nodelet that is loaded) or `process`; in
     Launched.outside `include`.
-    executable or plugin: what runs. name: empty where it is left to the program. namespace: absolute; empty where it is
-    left to the program, which then means `/`.
+    executable or plugin: what runs; arguments: what it is given. name: empty where it is left to the program.
+    namespace: absolute; empty where it is left to the program, which then means `/`.
     remaps, settings: in the order in which they are given to the node; of remaps ROS 1 takes the last for a name, ROS 2
     the first; of settings the last holds. settings of ROS 1 are on the server: Launched.values().
     conditions: those that could not be decided, as text. at: the line that starts it.

@@ -45,7 +45,7 @@ _MOST_EITHER, _MORE = 6, "..."
 def make_either(first: str, second: str, *reasons: str) -> LaunchText:
     """A text that is one of two, as each is shown: `<a or b>`. Each of what they may be stands once, however often it
     was put over another, and no more of them than a person reads."""
-    found = list(dict.fromkeys(each for shown in (first, second) for each in _list_either(shown)))
+    found = list(dict.fromkeys(each for shown in (first, second) for each in list_either(shown)))
     if len(found) == 1 and "<" in found[0]:
         return LaunchText(None, found[0], reasons)
     if len(found) > _MOST_EITHER or _MORE in found:
@@ -53,7 +53,7 @@ def make_either(first: str, second: str, *reasons: str) -> LaunchText:
     return make_unknown(_BETWEEN.join(found), *reasons)
 
 
-def _list_either(shown: str) -> list[str]:
+def list_either(shown: str) -> list[str]:
     """What a text that make_either() made may be; the text itself for another."""
     if not (shown.startswith("<") and shown.endswith(">") and _BETWEEN in shown):
         return [shown]
