@@ -200,7 +200,10 @@ def make_instance(all_started: Launched, own_name: str, started: Started, own_na
     settings = {key: _fill_setting(one, started) for key, one in given.items()}
     uncertain = (*started.conditions, *(r for r in (*started.name.reasons, *started.namespace.reasons) if r))
     chosen = frozenset(key for key, one in given.items() if one.text.chosen)
-    is_unread = any(isinstance(one, SettingFile) and one.entries is None for one in started.settings)
+    if one:
+        is_unread = any(f"{full}/".startswith(f"{name.rstrip('/')}/") for name in all_started.unread)
+    else:
+        is_unread = any(isinstance(given, SettingFile) and given.entries is None for given in started.settings)
     return Instance(started, full, settings, started.remaps, uncertain, chosen, is_unread)
 
 

@@ -33,6 +33,7 @@ def join_launched(parts: Sequence[Launched]) -> Launched:
         frozenset(name for part in parts for name in part.arguments), sum(part.actions for part in parts),
         tuple(dict.fromkeys(file for part in parts for file in part.parameter_files)),
         tuple(started for part in parts for started in part.outside),
+        unread=frozenset(name for part in parts for name in part.unread),
     )  # fmt: skip
 
 

@@ -59,8 +59,10 @@ def follow(
         launch.include((package, posixpath.normpath(path).lstrip("/")))
     files, done = tuple(dict.fromkeys(launch.files)), most - max(0, launch.budget)
     declared, settings = frozenset(launch.declared), tuple(launch.parameter_files)
-    outside = tuple(launch.outside)
-    return Launched(tuple(launch.started), launch.server, files, declared, done, settings, outside, launch.left_out)
+    outside, unread = tuple(launch.outside), frozenset(launch.unread)
+    return Launched(
+        tuple(launch.started), launch.server, files, declared, done, settings, outside, launch.left_out, unread=unread
+    )
 
 
 class _Launch(Filling):
@@ -85,6 +87,7 @@ class _Launch(Filling):
         self.started: list[Started] = []
         self.outside: list[Started] = []
         self.server: dict[str, LaunchParameter] = {}
+        self.unread: set[str] = set()
         self.files: list[tuple[str, str]] = []
         self.declared: set[str] = set()
         self.left_out = False
@@ -425,6 +428,8 @@ class _Launch(Filling):
             name = self.fill(file).value
             entries = self.read_entries(name) if name is not None else None
             place = self.find_source(name) if name is not None else None
+            if entries is None:
+                self.unread.add(full or "/")
         else:
             # What is filled in may be any piece of YAML, so that it comes before reading.
             entries, fill = parameters(self.fill(content or make_literal("")).shown).entries, False
@@ -591,14 +596,14 @@ class _Launch(Filling):
             del self.open[len(self.open) - len(open_) :]
         remaps = _drop_earlier([*self.scope.remaps, *own])
         for text in words:
-            old, sign, new = (text.value or "").partition(":=")
-            if not sign or old.startswith("__"):
+            old, new = _split_rule(text)
+            if not old or old.startswith("__"):
                 continue
             if old.startswith("_"):
                 if full.value is not None:
-                    self.put(f"{full.value}/{old[1:]}", wrap(new), action.line)
+                    self.put(f"{full.value}/{old[1:]}", new, action.line)
             else:
-                remaps.append(Remap(wrap(old), wrap(new), self.locate_line(action.line)))
+                remaps.append(Remap(wrap(old), new, self.locate_line(action.line)))
         kind, plugin = ("test" if action.kind == "test" else "node"), EMPTY
         if package.value == "nodelet" and words:
             command = words[0].value
@@ -640,8 +645,8 @@ def _split_words(text: LaunchText) -> list[LaunchText]:
 
 
 def _split_rule(text: LaunchText) -> tuple[str, LaunchText]:
-    """What a rule `old:=new` is for, and what it gives; the former is empty where it is not known. Of one that is one
-    of several rules for the same, what it gives is one of theirs."""
+    """What a rule `old:=new` is for, and what it gives; the former is empty for what is none, or where it is not known.
+    Of one that is one of several rules for the same, what it gives is one of theirs."""
     every = [text.value] if text.value is not None else list_either(text.shown)
     pairs = [one.partition(":=") for one in every]
     old = pairs[0][0]

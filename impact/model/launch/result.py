@@ -121,7 +121,8 @@ class Launched(NamedTuple):
     done. outside: launch files that are included and cannot be read, as of other packages or by a path that is not
     known: executable is their path, settings are their arguments and the parameter files that these name. left_out:
     something is not started, or not included, since a condition does not hold. possible: what is started if such
-    conditions hold, as far as somebody asked for it."""
+    conditions hold, as far as somebody asked for it. unread: names on the server of ROS 1 below which files of
+    parameters are put of which the content is not known."""
 
     started: tuple[Started, ...]
     server: Mapping[str, LaunchParameter]
@@ -132,6 +133,7 @@ class Launched(NamedTuple):
     outside: tuple[Started, ...] = ()
     left_out: bool = False
     possible: Launched | None = None
+    unread: frozenset[str] = frozenset()
 
     def collect_parameters(self, started: Started, full: str) -> dict[str, LaunchParameter]:
         """The private parameters of a node. full: its full name; of one that is empty, only what holds for any node."""

@@ -130,3 +130,64 @@ def test_a_command_of_something_else_is_named(tmp_path):
     files = {**FILES, "rig/launch/rig.launch.py": started}
     found = graph_on_disk(tmp_path, files, "rig/launch/rig.launch.py")
     assert [one.what for one in found.coverage.unresolved] == ["started command"]
+
+
+FILES_OF_ROS1 = {
+    "cart/package.xml": manifest("cart", "catkin"),
+    "cart/CMakeLists.txt": """
+        cmake_minimum_required(VERSION 3.0.2)
+        project(cart)
+        find_package(catkin REQUIRED COMPONENTS roscpp std_msgs)
+        catkin_package()
+        add_executable(cart cart.cpp)
+    """,
+    "cart/config/slow.yaml": "debug: false",
+    "cart/cart.cpp": """
+        #include <ros/ros.h>
+        #include <std_msgs/Empty.h>
+
+        int main(int argc, char** argv) {
+          ros::init(argc, argv, "cart");
+          ros::NodeHandle handle, own("~");
+          bool debug;
+          own.param("debug", debug, false);
+          ros::Publisher branch;
+          if (debug)
+            branch = handle.advertise<std_msgs::Empty>("traces", 1);
+          else
+            branch = handle.advertise<std_msgs::Empty>("counts", 1);
+          ros::Publisher state = handle.advertise<std_msgs::Empty>("state", 1);
+          ros::spin();
+        }
+    """,
+}
+
+
+@pytest.mark.parametrize(
+    ("around", "inside", "depends"),
+    [
+        ("", '<param name="debug" value="$(arg one)"/>', True),
+        ("", '<param name="debug" value="$(env FAST)"/>', True),
+        ("", '<param name="debug" value="true" if="$(arg one)"/>', True),
+        ("", '<rosparam command="load" file="$(arg one)"/>', True),
+        ('<rosparam command="load" file="$(find cart)/config/$(arg one).yaml"/>', "", True),
+        ('<rosparam command="load" ns="cart" file="$(arg one)"/>', "", True),
+        ('<rosparam command="load" ns="other" file="$(arg one)"/>', "", False),
+        ("", '<rosparam command="load" file="$(find cart)/config/slow.yaml"/>', False),
+        ("", '<param name="debug" value="false"/>', False),
+    ],
+)
+def test_the_same_of_ros1(tmp_path, around, inside, depends):
+    started = f'<launch><arg name="one"/>{around}<node pkg="cart" type="cart" name="cart">{inside}</node></launch>'
+    found = graph_on_disk(tmp_path, {**FILES_OF_ROS1, "cart/launch/cart.launch": started}, "cart/launch/cart.launch")
+    conditions = {one.topic: one.only_if for one in found.endpoints if one.role == "publisher" and not one.implied}
+    assert (bool(conditions["/counts"]), conditions["/state"]) == (depends, "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"), [("state:=$(env NAME)", "/<$NAME>"), ("state:=a", "/a"), ("$(env MORE)", "/state")]
+)
+def test_arguments_that_rename_in_ros1(tmp_path, arguments, expected):
+    started = f'<launch><node pkg="cart" type="cart" name="cart" args="{arguments}"/></launch>'
+    found = graph_on_disk(tmp_path, {**FILES_OF_ROS1, "cart/launch/cart.launch": started}, "cart/launch/cart.launch")
+    assert expected in {one.topic for one in found.endpoints}
