@@ -94,8 +94,8 @@ class NodeHandles:
         if "PrivateNodeHandle" in last or last in ("getPrivateNodeHandle", "private_node_handle"):
             yield FlowValue("~")
             return
-        if last == _SUB_NODE and "." in value.text:
-            node = FlowExpr("name", value.text.rpartition(".")[0])
+        if last == _SUB_NODE:
+            node = FlowExpr("name", value.text.rpartition(".")[0] or "this")
             yield from self._list_made((node, *value.parts), fn, line, values, seen)
             return
         if self.calls.find_kinds(self.code.resolve_written(value.text, fn.source, fn.scope), fn) & _HANDLES:

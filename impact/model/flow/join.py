@@ -15,7 +15,7 @@ from ....edges.memory import cache_method
 from ....edges.reach import walk
 from ...facts.flow import FlowCall, FlowExpr, FlowFile, Guard
 from ..launch.result import EMPTY, Launched, ShareLine, Started
-from ..launch.text import LaunchText
+from ..launch.text import LaunchText, make_unknown, wrap
 from . import nodes as programs_of
 from .called import CalledFunctions
 from .calls import FOREIGN, Calls, FrameworkCall
@@ -58,7 +58,7 @@ from .outside import list_outside
 from .plugin_hosts import PluginHosts, select_own
 from .qos import apply_overrides, find_qos, list_overridable
 from .started import Instance, make_instance
-from .types import FlowType, parse_flow_type
+from .types import Cls, FlowType, parse_flow_type
 from .values import ASKING, TOO_MANY, FlowValue, FlowValues, Work, spell_condition
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
@@ -384,6 +384,7 @@ class Join:
 
     def _start(self, launch: Launched) -> tuple[list[Running], list[Unresolved]]:
         found: list[Running] = []
+        containers = {full: one for one in launch.started if (full := _find_container_name(one))}
         missing = [self._explain_outside(include) for include in launch.outside]
         for start in launch.started:
             at = self._locate(start.at)
@@ -410,9 +411,9 @@ class Join:
             for part in (each for each in fitting if each.program == one.program):
                 namespace, _, own = part.node.name.rpartition("/")
                 own = own or f"<{one.program.executable or get_tail(one.program.plugin)}>"
-                # What a container is told for a component is for the component's own node alone.
-                inner = start.kind == "composable" and part.objects is not None and part.others is None
-                given = _strip_given(start) if inner else start
+                given = start
+                if start.kind == "composable" and start.generation != 1 and not self._takes_options(part):
+                    given = _give_container(start, containers)
                 if part.fixed:
                     given, namespace = _keep_fixed(given, part.fixed, namespace, start.namespace)
                 instance = make_instance(launch, own, given, namespace)
@@ -425,6 +426,18 @@ class Join:
                 parts.append(part._replace(node=node, instance=instance, values=values))
             found += self._select_open(parts)
         return found, missing
+
+    def _takes_options(self, part: Running) -> bool:
+        """Whether a node of a component takes what a container hands to it; another is one of the process of the
+        container like any."""
+        if part.objects is not None and part.others is None:
+            return "handed" in part.fixed
+        loaded = next(map(self.code.find_owner, part.program.roots), None)
+        return loaded is None or not self._leaves_options(loaded)
+
+    @cache_method
+    def _leaves_options(self, loaded: Cls) -> bool:
+        return self.objects.leaves_options(loaded)
 
     def _locate(self, at: ShareLine) -> tuple[str, int]:
         """The workspace path and line of a line in a package's share folder."""
@@ -1243,10 +1256,34 @@ def _keep_fixed(
         start = start._replace(name=EMPTY)
     if "namespace" in fixed:
         start = start._replace(namespace=EMPTY)
-        if "below" in fixed:
-            above = around.value if around.value is not None else make_open_part(around.shown)
-            namespace = join_name("/" + above.strip("/"), namespace.lstrip("/"))
+    if "below" in fixed:
+        above = around.value if around.value is not None else make_open_part(around.shown)
+        namespace = join_name("/" + above.strip("/"), namespace.lstrip("/"))
     return start, namespace
+
+
+def _find_container_name(start: Started) -> str:
+    """The full name of what other nodes may be loaded into; empty for others, and where it is not known."""
+    name, space = start.name.value, start.namespace.value
+    if start.plugin is not EMPTY or start.kind == "process" or not name or space is None:
+        return ""
+    return join_name("/" + space.lstrip("/"), name)
+
+
+def _give_container(start: Started, containers: Mapping[str, Started]) -> Started:
+    """The start of a component as if it was given what its container is given, as any node in the process of that is.
+    containers: by their full names; of one that is started elsewhere nothing but its name is known."""
+    full = start.container.value
+    around = containers.get(full) if full else None
+    if around is not None:
+        return start._replace(
+            name=around.name, namespace=around.namespace, remaps=around.remaps, settings=around.settings
+        )
+    own = start._replace(remaps=(), settings=())
+    if full is None:
+        return own._replace(name=make_unknown("container"), namespace=make_unknown("namespace"))
+    space, _, name = full.rpartition("/")
+    return own._replace(name=wrap(name), namespace=wrap(space))
 
 
 def _select_types(site: Site, owner: Owner) -> tuple[str, ...]:

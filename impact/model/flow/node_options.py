@@ -13,6 +13,7 @@ from ...facts.flow import FlowCall, FlowExpr
 from .calls import FrameworkCall
 from .code import FlowCode, Fn, find_parameter, get_tail
 from .names import RemappingRule, parse_ros2_rule
+from .types import Cls
 from .values import FlowValues
 
 _STRINGS = frozenset(("std::string", "string"))
@@ -20,6 +21,8 @@ _CLASS = "NodeOptions"
 _ALONE = "use_global_arguments"
 _REMAPS = frozenset(("-r", "--remap"))
 _DEEPEST = 4
+_HANDS_ON = frozenset((_CLASS, "move", "forward"))
+_ARGUMENTS = "arguments"
 
 
 class GivenPiece(NamedTuple):
@@ -57,6 +60,27 @@ class NodeOptions:
         """Whether a node does not take the arguments of its program."""
         return any(_is_turned_off(piece.value) for piece in self._list_pieces(use, values))
 
+    def is_handed(self, use: FrameworkCall, loaded: Cls, values: FlowValues) -> bool:
+        """Whether the options of a node are those that a container hands to a component, whose arguments they have.
+        loaded: the class of the component."""
+        pieces = list(self._list_pieces(use, values))
+        if any(piece.value.parts and get_tail(piece.value.text) == _ARGUMENTS for piece in pieces):
+            return False  # it has others
+        return any(self._is_handed_in(piece, loaded) for piece in pieces)
+
+    def _is_handed_in(self, piece: GivenPiece, loaded: Cls) -> bool:
+        if piece.value.kind != "name" or not self.code.is_constructor(piece.fn):
+            return False
+        owner, place = self.code.find_owner(piece.fn), find_parameter(piece.fn, piece.value.text)
+        of_class = owner is not None and owner.key == loaded.key
+        return of_class and place is not None and _CLASS in piece.fn.facts.parameters[place[0]].type
+
+    def are_dropped(self, loaded: Cls) -> bool:
+        """Whether a component does nothing with the options that a container hands to it."""
+        makers = [fn for fn in self.code.list_functions(loaded) if self.code.is_constructor(fn)]
+        handed = [(fn, one.name) for fn in makers for one in fn.facts.parameters if _CLASS in one.type]
+        return bool(handed) and not any(name and _mentions(fn, name) for fn, name in handed)
+
     def list_remaps(self, use: FrameworkCall, values: FlowValues) -> tuple[RemappingRule, ...]:
         """The remappings of names that the options of a node have, where these are written out."""
         found: dict[RemappingRule, None] = {}
@@ -81,6 +105,8 @@ class NodeOptions:
         if value.kind == "keyword" and value.parts:
             yield from self._follow(piece._replace(value=value.parts[0]), values, depth + 1)
         elif value.kind == "call":
+            if get_tail(value.text) in _HANDS_ON and len(value.parts) == 1:
+                yield from self._follow(piece._replace(value=value.parts[0]), values, depth + 1)
             targets = self.code.list_targets(value.text, fn)
             calls = [call for call in fn.list_calls(value.text) if call.arguments == value.parts]
             if value.receiver is not None:
@@ -95,6 +121,8 @@ class NodeOptions:
                 written += [(each.guard, each.line, each.value) for each in target.facts.assignments]
                 for guard, line, one in written:
                     yield GivenPiece(one, target, line, guard, ((target, calls[0]),))
+        elif value.kind == "make" and get_tail(value.text) in _HANDS_ON and len(value.parts) == 1:
+            yield from self._follow(piece._replace(value=value.parts[0]), values, depth + 1)
         elif value.kind == "name":
             yield from self._follow_name(piece, values, depth)
 
@@ -118,6 +146,21 @@ class NodeOptions:
             # Of several that give something, it is not told which.
             for value, giver, line in given if len(given) == 1 else ():
                 yield from self._follow(GivenPiece(value, giver, line), values, depth + 1)
+
+
+def _mentions(fn: Fn, name: str) -> bool:
+    """Whether a function does anything with a parameter."""
+    given = [one for call in fn.facts.calls for one in call.arguments]
+    given += [each.value for each in fn.facts.assignments]
+    return any(_has_name(one, name) for one in given) or any(
+        call.callee.startswith(f"{name}.") for call in fn.facts.calls
+    )
+
+
+def _has_name(value: FlowExpr, name: str) -> bool:
+    own = value.kind in ("name", "other", "call") and name in value.text
+    inner = (*value.parts, value.receiver) if value.receiver is not None else value.parts
+    return own or any(_has_name(one, name) for one in inner)
 
 
 def _names_options(value: FlowExpr) -> bool:

@@ -39,8 +39,8 @@ class NodeObject(NamedTuple):
     classes that it is of, or the place where it is made; and `any CLASS`, for any object of a class. name: full, with
     brackets for what is not known of it. values: what expressions are worth in its code. uses: those that name it.
     fixed: `name` and `namespace` where its options give it these, whatever a launch says; `below` where that namespace
-    is below the one of another node; `all` where it takes nothing of what a launch gives. remaps: its own
-    remappings."""
+    is below the one of another node; `all` where it takes nothing of what a launch gives; `handed` where it takes what
+    a launch gives the component that makes it. remaps: its own remappings."""
 
     keys: frozenset[str]
     name: str
@@ -68,12 +68,12 @@ class NodeObjects:
         by_class = group_pairs((owner.key, use) for use in named if (owner := self._find_named_class(use)))
         found: list[NodeObject] = []
         for cls in self._list_classes(by_class, functions, loaded):
-            found += self._make_class_objects(cls, by_class, functions)
+            found += self._make_class_objects(cls, by_class, functions, loaded)
         for use in named:
             if self._find_named_class(use) is None:
                 own = self._evaluate_name(use, self.values) or f"<{get_tail(use.call.target) or 'node'}>"
                 keys = frozenset((make_key(use.fn, use.call.line),))
-                full, fixed = self.join_namespace(use, own, self.values), self.find_fixed(use, self.values)
+                full, fixed = self.join_namespace(use, own, self.values), self.find_fixed(use, self.values, loaded)
                 remaps = self._options.list_remaps(use, self.values)
                 found.append(NodeObject(keys, full, self.values, (use,), fixed, remaps))
         return found
@@ -143,9 +143,10 @@ class NodeObjects:
         return any(self.code.find_class(base, one.source, one.name) is None for base, one in bases)
 
     def _make_class_objects(
-        self, cls: Cls, by_class: dict[str, list[FrameworkCall]], functions: Collection[Fn]
+        self, cls: Cls, by_class: dict[str, list[FrameworkCall]], functions: Collection[Fn], loaded: Cls | None
     ) -> Iterator[NodeObject]:
-        """The nodes of a class: those that it gives different names, as far as these are known."""
+        """The nodes of a class: those that it gives different names, as far as these are known. loaded: as for
+        list_objects()."""
         chain = self.code.list_bases(cls)
         keys = frozenset(key for one in chain for key in (one.key, f"any {one.key}"))
         # That of the framework's own class is the name; what derived classes give may be anything.
@@ -164,7 +165,7 @@ class NodeObjects:
             if own is not None:
                 # A derived class may hand the options to the one that names it.
                 telling = next((use for use in uses if self._options.find_rule(use, "__ns:=", values)), own[0])
-                full, fixed = self.join_namespace(telling, own[1], values), self.find_fixed(telling, values)
+                full, fixed = self.join_namespace(telling, own[1], values), self.find_fixed(telling, values, loaded)
                 remaps = self._options.list_remaps(telling, values)
             by_name.setdefault((full, fixed, remaps), []).extend([row] if row is not None else [])
         for (name, fixed, remaps), made in by_name.items():
@@ -208,16 +209,28 @@ class NodeObjects:
             space = space.replace(NAMESPACE, "")  # of another node, whose own is that of all where nothing is given
         return join_name(_OPEN if space is None or "{" in space else "/" + space.strip("/"), own)
 
-    def find_fixed(self, use: FrameworkCall, values: FlowValues) -> frozenset[str]:
-        """What the options of a node say of it, whatever a launch says, as NodeObject.fixed has it."""
+    def find_fixed(self, use: FrameworkCall, values: FlowValues, loaded: Cls | None = None) -> frozenset[str]:
+        """What the options of a node say of it, whatever a launch says, as NodeObject.fixed has it. loaded: as for
+        list_objects()."""
         remapped = self._options.find_rule(use, "__ns:=", values)
         found = {"name"} if self._options.find_rule(use, "__node:=", values) is not None else set()
+        written = self.calls.find_argument(use, use.row.namespace) if use.row.namespace else None
+        if written is not None and remapped is None:
+            given = GivenPiece(written, use.fn, use.call.line).list_texts(values)
+            found |= {"below"} if any(NAMESPACE in (one or "") for one in given) else set()
         if self._options.is_alone(use, values):
             return frozenset(("name", "namespace", "all", *found))
+        if loaded is not None and self._options.is_handed(use, loaded, values):
+            found.add("handed")
         if remapped is not None:
             below = any(NAMESPACE in (one or "") for one in remapped.list_texts(values))
             found |= {"namespace", "below"} if below else {"namespace"}
         return frozenset(found)
+
+    def leaves_options(self, loaded: Cls) -> bool:
+        """Whether the class of a component does nothing with what a container hands to it: it is named like any other
+        node of the process then."""
+        return self.is_node(loaded) and self._options.are_dropped(loaded)
 
     def find_keys_on_way(self, use: FrameworkCall, functions: Set[Fn], way: FlowValues) -> frozenset[str]:
         """The same as find_keys(), on one of the ways that lead to the use."""

@@ -88,6 +88,7 @@ class _Launch(Filling):
         self.outside: list[Started] = []
         self.server: dict[str, LaunchParameter] = {}
         self.unread: set[str] = set()
+        self.container = EMPTY
         self.files: list[tuple[str, str]] = []
         self.declared: set[str] = set()
         self.left_out = False
@@ -474,9 +475,10 @@ class _Launch(Filling):
             remaps=(*first_remaps, *remaps),
             settings=(*first_settings, *settings),
             arguments=arguments,
+            container=self.container,
         )
         if action.kind == "container":
-            self.do_load(action)
+            self.load_into(resolve(full_namespace if full_namespace.value != "" else wrap("/"), name), action)
 
     def read_field(self, action: Action, key: str) -> LaunchText:
         return self.fill(action.get(key) or make_literal(""))
@@ -528,10 +530,18 @@ class _Launch(Filling):
         return remaps, settings, name, namespace
 
     def do_load(self, action: Action) -> None:
-        """Starts the composable nodes below an action."""
+        named = self.read_field(action, "container-node")
+        if named.value == "":
+            self.load_into(resolve(wrap("/"), self.read_field(action, "container")), action)
+            return
+        self.load_into(resolve(self.scope.namespace if self.scope.namespace.value != "" else wrap("/"), named), action)
+
+    def load_into(self, container: LaunchText, action: Action) -> None:
+        """Starts the composable nodes below an action in a container, by its full name."""
         outer, self.scope = self.scope, self.scope.make_inner(len(self.open))
+        around, self.container = self.container, container
         self.run(child for child in action.children if child.kind == "composable")
-        self.scope = outer
+        self.scope, self.container = outer, around
 
     do_composable = start_ros2_node
 
@@ -604,7 +614,7 @@ class _Launch(Filling):
                     self.put(f"{full.value}/{old[1:]}", new, action.line)
             else:
                 remaps.append(Remap(wrap(old), new, self.locate_line(action.line)))
-        kind, plugin = ("test" if action.kind == "test" else "node"), EMPTY
+        kind, plugin, container = ("test" if action.kind == "test" else "node"), EMPTY, EMPTY
         if package.value == "nodelet" and words:
             command = words[0].value
             if command == "manager":
@@ -612,6 +622,8 @@ class _Launch(Filling):
             elif command in ("load", "standalone") and len(words) > 1:
                 plugin = words[1]
                 kind = "composable" if command == "load" else "node"
+                if command == "load":
+                    container = resolve(namespace, words[2]) if len(words) > 2 else make_unknown("manager")
         self.begin(
             action,
             kind,
@@ -622,6 +634,7 @@ class _Launch(Filling):
             namespace=namespace,
             remaps=tuple(remaps),
             arguments=tuple(words),
+            container=container,
         )
 
     def split(self, text: LaunchText) -> list[LaunchText]:

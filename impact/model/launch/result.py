@@ -98,7 +98,8 @@ class Started(NamedTuple):
     namespace: absolute; empty where it is left to the program, which then means `/`.
     remaps, settings: in the order in which they are given to the node; of remaps ROS 1 takes the last for a name, ROS 2
     the first; of settings the last holds. settings of ROS 1 are on the server: Launched.values().
-    conditions: those that could not be decided, as text. at: the line that starts it.
+    conditions: those that could not be decided, as text. at: the line that starts it. container: the full name of the
+    node that a composable node, or a nodelet, is loaded into; empty for what is not loaded.
     """
 
     kind: str
@@ -113,6 +114,7 @@ class Started(NamedTuple):
     remaps: tuple[Remap, ...] = ()
     settings: tuple[LaunchParameter | SettingFile, ...] = ()
     arguments: tuple[LaunchText, ...] = ()
+    container: LaunchText = EMPTY
 
 
 class Launched(NamedTuple):

@@ -193,7 +193,8 @@ def test_nodes_of_a_program_that_is_started(tmp_path, started, expected):
 
 
 def test_a_component_and_the_node_that_it_makes(tmp_path):
-    """The name and the remappings that a launch gives are for the component alone."""
+    """The name and the remappings that a launch gives a component are in its options; a node that is made without them
+    is one of the process, which the launch names like the container."""
     found = graph_on_disk(tmp_path, {
         "body/package.xml": manifest("body", "ament_cmake"),
         "body/CMakeLists.txt": """
@@ -228,7 +229,7 @@ def test_a_component_and_the_node_that_it_makes(tmp_path):
         """,
     }, "body/launch/eye.launch.xml")  # fmt: skip
     told = {(node, topic) for node, topic, _ in ends(found, "publisher")}
-    assert told == {("/face/left_eye", "/face/looked"), ("/lid", "/seen")}
+    assert told == {("/face/left_eye", "/face/looked"), ("/box", "/seen")}
 
 
 def test_of_several_constructors_the_one_that_takes_as_many_arguments_is_called():
