@@ -17,6 +17,7 @@ from ...facts.flow import FlowCall, FlowExpr, FlowFile, Guard
 from ..launch.result import EMPTY, Launched, ShareLine, Started
 from ..launch.text import LaunchText, make_unknown, wrap
 from . import nodes as programs_of
+from .build_constants import BuildConstants
 from .called import CalledFunctions
 from .calls import FOREIGN, Calls, FrameworkCall
 from .code import CodeFile, FlowCode, Fn, find_argument, find_parameter, get_tail, list_made
@@ -124,7 +125,7 @@ class Join:
     """One body of code joined. files: facts by path; package_of: the package a path belongs to; built: what is built of
     it; ros: the generation where a framework does not tell; defined: knows which interfaces there are; before: as for
     Code; find_file: the workspace path of a file in a package's share folder, empty for what is not there; uncompiled:
-    the sources that were left out of the files, since nothing compiles them."""
+    the sources that were left out of the files, since nothing compiles them; constants: what the builds define."""
 
     def __init__(
         self,
@@ -137,12 +138,13 @@ class Join:
         before: FlowCode | None = None,
         find_file: Callable[[str, str], str] = lambda package, path: "",
         uncompiled: Iterable[str] = (),
+        constants: BuildConstants | None = None,
     ):
         self.ros, self.built, self._find_file = ros, list(built), find_file
         self._uncompiled = tuple(sorted(uncompiled))
         self.plugins = {name: cls for package in self.built for name, cls in package.plugins.items()}
         sources = (CodeFile(path, package_of(path), facts) for path, facts in sorted(files.items()))
-        self.code = FlowCode(sources, before)
+        self.code = FlowCode(sources, before, constants)
         self.calls = Calls(self.code, table or load_frameworks())
         self.values = FlowValues(self.calls)
         self.sites = Sites(self.code, self.calls, self.values, defined or DefinedInterfaces())

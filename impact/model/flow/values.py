@@ -1364,14 +1364,19 @@ class FlowValues:
     def _evaluate_constant(self, variable: Variable, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
         name = variable.name
         found = self.code.list_constants(variable, fn)
+        built = self.code.list_built_constants(name, fn)
         # The preprocessor, or the program that is built, chooses one of several.
-        several = len({constant.value for constant, _ in found if constant.value is not None}) > 1
-        condition = f"`{name}` is defined so" if several else ""
+        every = {constant.value for constant, _ in found if constant.value is not None}.union(one for one, _ in built)
+        condition = f"`{name}` is defined so" if len(every) > 1 or any(depends for _, depends in built) else ""
+        for value, _ in built:
+            yield from put_under_more(self._evaluate(value, fn, 0, seen), condition)
+        if built and not condition:
+            return
         for constant, source in found:
             if constant.value is not None:
                 holder = self.code.find_first(source, fn)
                 yield from put_under_more(self._evaluate(constant.value, holder, constant.line, seen), condition)
-        if found:
+        if found or built:
             return
         if "::" in name or "." in name:
             cls, _, member = name.replace(".", "::").rpartition("::")

@@ -15,6 +15,7 @@ from ...facts.store import Store, recall
 from ...tree.paths import Tree
 from ..package import Watched
 from ..workspace import Package, Workspace, link
+from .build_constants import BuildConstants, GivenMacros
 from .callers import Callers, build_callers
 from .defined import DefinedInterfaces
 from .file_selection import BUILD, compute_code_key, is_code, list_run_by_hand, make_code_selector
@@ -221,7 +222,16 @@ def join_code(workspace: Workspace) -> Join:
     return Join(
         {path: file for path, file in files.items() if path not in uncompiled}, packages.__getitem__, built,
         workspace.ros, defined=defined, find_file=find_file, uncompiled=uncompiled,
+        constants=BuildConstants(_list_macros(workspace)),
     )  # fmt: skip
+
+
+def _list_macros(workspace: Workspace) -> Iterator[GivenMacros]:
+    """What the build of each package gives to its compiler."""
+    for package in workspace:
+        if package.build.macros:
+            compiled = {target.name: target.sources for target in package.build.targets}
+            yield GivenMacros(package.name, package.build.macros, compiled)
 
 
 def make_graph(
