@@ -60,7 +60,7 @@ from .plugin_hosts import PluginHosts, select_own
 from .qos import apply_overrides, find_qos, list_overridable
 from .started import Instance, make_instance
 from .types import Cls, FlowType, parse_flow_type
-from .values import ASKING, TOO_MANY, FlowValue, FlowValues, Work, spell_condition
+from .values import ASKING, TOO_MANY, FlowValue, FlowValues, Work, spell_condition, spell_pattern
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _OVERRIDES = re.compile(r"qos_overrides\.").match
@@ -729,7 +729,7 @@ class Join:
             count.calls, count.resolved, count.by_default, len(self.code.sources), tuple(sorted(unread)),
             tuple(sorted(count.unresolved, key=lambda one: (one.path, one.line, one.what))),
             tuple(Unresolved(use.row.does, f"inside `{use.fn.name}`", *_get_place(use)) for use in self.sites.wrapped),
-            self._uncompiled,
+            self._uncompiled, in_part=count.in_part,
         )  # fmt: skip
         known = [one.instance.started for one in running if one.instance is not None]
         outside = tuple(dict.fromkeys(list_outside(launch, known, self._locate))) if launch is not None else ()
@@ -752,7 +752,10 @@ class Join:
                 every = ((those[0], site), *adapted)
                 found = (self._find_missing(one) or self._find_refused(one, owner) for owner, one in every)
                 lacking = next(filter(None, found), None)
-                lost = Unresolved(*lacking, *_get_place(site.use), site.written) if lacking else None
+                lost = None
+                if lacking is not None:
+                    pattern = spell_pattern(value for _, one in every for value in one.names)
+                    lost = Unresolved(*lacking, *_get_place(site.use), site.written, pattern)
                 count.call(lost, (site,))
             for owner, here in adapted:
                 owners.use(owner)
@@ -780,7 +783,10 @@ class Join:
                 sites = [self._adapt_site(site, those[0]) if owners.launched else site for site in statement.sites]
                 reason = statement.reason or next((n.reason for s in sites for n in s.names if n.text is None), "")
                 receiver = self.calls.get_receiver(statement.use)
-                lost = Unresolved("publish", reason, *_get_place(statement.use), receiver) if reason else None
+                lost = None
+                if reason:
+                    pattern = "" if statement.reason else spell_pattern(value for one in sites for value in one.names)
+                    lost = Unresolved("publish", reason, *_get_place(statement.use), receiver, pattern)
                 count.call(lost, statement.sites)
             for owner in those:
                 owners.use(owner)
@@ -1062,8 +1068,8 @@ class Join:
         node = _get_node(owner)
         instance = owner.instance if isinstance(owner, Running) else None
         text = value.text if value.text is not None else value.shown
-        if value.text is None and not text:
-            return "", "unresolved", value.reason
+        if value.text is None and text[:1] in ("", "<"):
+            return "", "unresolved", value.reason  # what begins with something unknown may be in any namespace
         loaded = owner.loaded if isinstance(owner, Running) else None
         unknown = f"/<{(node.executable or get_tail(node.plugin)) if node else 'node'}>"
         full = loaded.name if loaded is not None else (node and node.name) or unknown
@@ -1214,7 +1220,7 @@ class _Count:
     """Calls of the frameworks, counted."""
 
     def __init__(self, unresolved: list[Unresolved]):
-        self.calls = self.resolved = self.by_default = 0
+        self.calls = self.resolved = self.by_default = self.in_part = 0
         self.unresolved = unresolved
 
     def call(self, lost: Unresolved | None, sites: Iterable[Site]) -> None:
@@ -1222,6 +1228,7 @@ class _Count:
         self.calls += 1
         if lost is not None:
             self.unresolved.append(lost)
+            self.in_part += bool(lost.pattern)
         else:
             self.resolved += 1
             self.by_default += all(value.how == "default" for site in sites for value in site.names)

@@ -69,7 +69,9 @@ def merge_launches(code: Graph, launches: Sequence[Launch]) -> Graph:
     resolved = code.coverage.resolved + len(code.coverage.unresolved) - len(left)
     return msgspec.structs.replace(
         code,
-        coverage=msgspec.structs.replace(code.coverage, resolved=resolved, unresolved=(*left, *lost)),
+        coverage=msgspec.structs.replace(
+            code.coverage, resolved=resolved, unresolved=(*left, *lost), in_part=sum(bool(one.pattern) for one in left)
+        ),
         nodes=tuple(sorted(nodes.values(), key=lambda node: node.id)),
         endpoints=endpoints,
         publishes=publishes,

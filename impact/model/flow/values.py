@@ -349,6 +349,8 @@ class FlowValues:
         if known and beside:
             return [*(one._replace(how="partly") for one in known), *beside]
         in_part = list({one.shown: one for one in found if one.shown}.values())
+        if len(in_part) > _MOST_IN_PART or not all(one.shown for one in found):
+            in_part = [one._replace(more=True) for one in in_part]
         return known or in_part[:_MOST_IN_PART] or found[:1] or [FlowValue(None, "unresolved", "no value is given")]
 
     def find_only_text(self, value: FlowExpr, fn: Fn) -> str | None:
@@ -1951,17 +1953,43 @@ def _join_in_part(row: tuple[FlowValue, ...], value: FlowExpr) -> FlowValue:
         one.text if one.text is not None else one.shown or make_open_part(f"<{_label(part)}>") for one, part in parts
     )
     known = _WORD_OR_NUMBER.search(_BRACKETS.sub("", shown)) and len(shown) < _LONGEST_IN_PART and "{" not in shown
-    # What begins with something unknown may be in any namespace.
-    return joined._replace(shown=shown if known and shown[0] != "<" else "")
+    return joined._replace(shown=shown if known else "")
+
+
+def spell_pattern(values: Iterable[FlowValue]) -> str:
+    """What names that are not known match, `*` being any text; empty where of one of them no segment is known."""
+    found: dict[str, None] = {}
+    for one in values:
+        if one.text is None:
+            if one.more:
+                return ""
+            pattern = _BRACKETS.sub("*", one.shown)
+            if not any(_SEGMENT.fullmatch(segment) for segment in pattern.split("/")):
+                return ""
+            found[f"/{pattern}" if pattern[0] == "*" else pattern] = None
+    return " or ".join(found)
 
 
 def _label(value: FlowExpr) -> str:
     """A short name for what is not known."""
+    variable = _find_variable(value)
+    if variable:
+        return f"${variable}"
     while value.kind in ("call", "make", "keyword") and len(value.parts) == 1:
         value = value.parts[0]
     if value.kind == "index" and value.parts:
         return _label(value.parts[0])
     return get_tail(value.text.replace("[]", "").rstrip("().")) or "..."
+
+
+def _find_variable(value: FlowExpr) -> str:
+    """The variable of the environment that an expression asks for, empty for none."""
+    asked = None
+    if value.kind == "index" and len(value.parts) == 2 and value.parts[0].text.endswith("environ"):
+        asked = value.parts[1]
+    elif value.kind == "call" and value.parts and value.text.endswith(("environ.get", "getenv")):
+        asked = value.parts[0]
+    return asked.text if asked is not None and asked.kind == "text" else ""
 
 
 def _join_texts(*texts: str) -> str:
@@ -2076,6 +2104,7 @@ def _spell_boost_format(value: FlowExpr) -> FlowExpr | None:
 
 _WORD_OR_NUMBER = re.compile(r"\w")
 _BRACKETS = re.compile(r"<[^<>]*>")
+_SEGMENT = re.compile(r"\w+")
 _LONGEST_IN_PART = 200
 _COUNTED = re.compile(r"0?[0-9]{0,2}d?")
 
