@@ -186,8 +186,8 @@ COPIED = "package"
 
 class Unresolved(msgspec.Struct, frozen=True):
     """A call that was not resolved. what: `publisher topic`, `subscriber callback`, `publish`, ...; reason: why.
-    pattern: of a name that is known in part what it matches, with `*` for any text (`/*/scan`); empty where no segment
-    of it is known."""
+    pattern: of a name that is known in part what it matches, with `*` for any text (`/*/scan`); empty where nothing of
+    it is known."""
 
     what: str
     reason: str
@@ -211,7 +211,7 @@ class Coverage(msgspec.Struct, frozen=True):
     did not parse. wrappers: calls inside functions that stand for the framework's own; their callers are counted.
     uncompiled: sources that are left out, since no target compiles them. by_text: what a search of the text finds of
     calls, by package; missed: those of them that were not understood. Both are of the whole code. in_part: of the
-    calls that are not resolved those that have a pattern."""
+    calls that are not resolved those of whose name a whole segment is known."""
 
     calls: int
     resolved: int

@@ -45,6 +45,7 @@ from .loads import Loaded, list_loaded
 from .names import (
     NameRefused,
     RemappingRule,
+    has_known_segment,
     is_open,
     join_name,
     make_open_part,
@@ -1228,7 +1229,7 @@ class _Count:
         self.calls += 1
         if lost is not None:
             self.unresolved.append(lost)
-            self.in_part += bool(lost.pattern)
+            self.in_part += has_known_segment(lost.pattern)
         else:
             self.resolved += 1
             self.by_default += all(value.how == "default" for site in sites for value in site.names)

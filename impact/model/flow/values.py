@@ -27,7 +27,7 @@ from .graph import NOT_GIVEN, How
 from .literals import spell_number
 from .makers import Makers
 from .named_in_turns import DefaultGiven, NamesInTurns
-from .names import is_open, make_open_part, resolve_ros1_name
+from .names import OR, is_open, make_open_part, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
 from .printing import find_format_place
 from .reaching import LOOPS, FlowValue, ReachingValues
@@ -1957,17 +1957,15 @@ def _join_in_part(row: tuple[FlowValue, ...], value: FlowExpr) -> FlowValue:
 
 
 def spell_pattern(values: Iterable[FlowValue]) -> str:
-    """What names that are not known match, `*` being any text; empty where of one of them no segment is known."""
+    """What names that are not known match, `*` being any text; empty where of one of them nothing is known."""
     found: dict[str, None] = {}
     for one in values:
         if one.text is None:
-            if one.more:
-                return ""
             pattern = _BRACKETS.sub("*", one.shown)
-            if not any(_SEGMENT.fullmatch(segment) for segment in pattern.split("/")):
+            if one.more or not pattern:
                 return ""
             found[f"/{pattern}" if pattern[0] == "*" else pattern] = None
-    return " or ".join(found)
+    return OR.join(found)
 
 
 def _label(value: FlowExpr) -> str:
@@ -2104,7 +2102,6 @@ def _spell_boost_format(value: FlowExpr) -> FlowExpr | None:
 
 _WORD_OR_NUMBER = re.compile(r"\w")
 _BRACKETS = re.compile(r"<[^<>]*>")
-_SEGMENT = re.compile(r"\w+")
 _LONGEST_IN_PART = 200
 _COUNTED = re.compile(r"0?[0-9]{0,2}d?")
 
