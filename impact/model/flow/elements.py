@@ -283,6 +283,9 @@ class Elements:
             called = self._find_called(head, fn, line)
             held = self._list_held(value.receiver or called or FlowExpr("name", head), fn, line, depth + 1)
             return _select_column(held, _OF_DICTIONARIES[last]) if held and last in _OF_DICTIONARIES else held
+        if python and head and last == "get" and value.parts:
+            chosen = self.select(value.receiver or FlowExpr("name", head), value.parts[0], fn, line)
+            return self._join_lists(chosen, depth) if chosen else None
         if python and not head and value.text == "range":
             return self._make_range(value, fn, line)
         if python and not head and value.text in _COPIES and len(value.parts) == 1:

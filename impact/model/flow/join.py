@@ -22,6 +22,7 @@ from .called import CalledFunctions
 from .calls import FOREIGN, Calls, FrameworkCall
 from .code import CodeFile, FlowCode, Fn, find_argument, find_parameter, get_tail, list_made
 from .defined import DefinedInterfaces
+from .documents import Documents
 from .endpoints import Site, Sites, Statement, unparse
 from .frameworks import Frameworks, load_frameworks
 from .graph import (
@@ -126,7 +127,8 @@ class Join:
     """One body of code joined. files: facts by path; package_of: the package a path belongs to; built: what is built of
     it; ros: the generation where a framework does not tell; defined: knows which interfaces there are; before: as for
     Code; find_file: the workspace path of a file in a package's share folder, empty for what is not there; uncompiled:
-    the sources that were left out of the files, since nothing compiles them; constants: what the builds define."""
+    the sources that were left out of the files, since nothing compiles them; constants: what the builds define;
+    documents: the files that it reads by itself."""
 
     def __init__(
         self,
@@ -140,6 +142,7 @@ class Join:
         find_file: Callable[[str, str], str] = lambda package, path: "",
         uncompiled: Iterable[str] = (),
         constants: BuildConstants | None = None,
+        documents: Documents | None = None,
     ):
         self.ros, self.built, self._find_file = ros, list(built), find_file
         self._uncompiled = tuple(sorted(uncompiled))
@@ -148,6 +151,7 @@ class Join:
         self.code = FlowCode(sources, before, constants)
         self.calls = Calls(self.code, table or load_frameworks())
         self.values = FlowValues(self.calls)
+        self.values.documents = documents or self.values.documents
         self.sites = Sites(self.code, self.calls, self.values, defined or DefinedInterfaces())
         self.reach = CodeReach(self.sites)
         self.objects = NodeObjects(self.calls, self.values, ros)

@@ -65,7 +65,11 @@ class InWorkspace:
     def find_parameter_file(self, package: str, path: str) -> ParameterFile | None:
         """The facts of a parameter file; None for what is not there."""
         place = self.find_workspace_path(package, path)
-        return self._get_facts(place, "flow_parameters") if place else None
+        return self.read_values(place) if place else None
+
+    def read_values(self, place: str) -> ParameterFile | None:
+        """The values of a YAML file of the workspace; None for what is not there."""
+        return self._get_facts(place, "flow_parameters")
 
     def _get_facts(self, place: str, kind: str) -> Any:
         return self.workspace.extraction.look((place,), kind).get(place)

@@ -21,6 +21,7 @@ from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number, select_overloads
 from .conditions import ConditionReader, DecidedCondition, is_truth
+from .documents import SHARES, Documents
 from .elements import DEFAULT, SETTING, Elements, KnownCount, ListElement, find_begun
 from .given_lists import GivenLists
 from .graph import NOT_GIVEN, How
@@ -245,6 +246,7 @@ class FlowValues:
         self.find_prefix: Callable[[FrameworkCall, FlowValues], str] = lambda use, values: ""
         # The value of a constant of a message or a released package by its path, where it is a string.
         self.find_outside_text: Callable[[str, Fn], str | None] = lambda path, fn: None
+        self.documents = Documents()
         self._prefixes: dict[int, str] = {}
         self._asked_prefixes: set[int] = set()
         self._left = _MOST_STEPS
@@ -336,7 +338,7 @@ class FlowValues:
         other._known, other._works, other._asking = self._known, self._works, self._asking
         other.find_prefix, other._prefixes = self.find_prefix, self._prefixes
         other._asked_prefixes = self._asked_prefixes
-        other.find_outside_text = self.find_outside_text
+        other.find_outside_text, other.documents = self.find_outside_text, self.documents
         return other
 
     def evaluate(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
@@ -581,8 +583,19 @@ class FlowValues:
     @cached_property
     def elements(self) -> Elements:
         """What lists and dictionaries of the code hold."""
-        asked = (self.runs, self.find_only_call, self.find_makers, GivenLists(self).find, self.find_turn)
+        asked = (self.runs, self.find_only_call, self.find_makers, self._find_given_list, self.find_turn)
         return Elements(self.code, *asked, self._count)
+
+    @cached_property
+    def _given_lists(self) -> GivenLists:
+        return GivenLists(self)
+
+    def _find_given_list(self, value: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
+        """What a launch, or a file that the code reads, makes of an expression; None for all else."""
+        document = self.documents.find(value, fn, line, self) if value.kind == "call" else None
+        if document is not None and document.kind == "list":
+            return [ListElement(part, fn, line) for part in document.parts]
+        return self._given_lists.find(value, fn, line)
 
     def _count(self, value: FlowExpr, fn: Fn, line: int) -> KnownCount | None:
         """The only number that a limit of a loop may be."""
@@ -828,6 +841,7 @@ class FlowValues:
         for name in _SHARED:
             other.__dict__[name] = getattr(self, name)
         other.find_prefix, other.find_outside_text = self.find_prefix, self.find_outside_text
+        other.documents = self.documents
         return other
 
     @cached_property
@@ -1505,7 +1519,7 @@ class FlowValues:
                 yield from self._evaluate_name(head, fn, line, seen)
             return
         if head and last in ("get", "at") and value.parts and (python or value.receiver is None):
-            chosen = self.elements.select(FlowExpr("name", head), value.parts[0], fn, line)
+            chosen = self.elements.select(value.receiver or FlowExpr("name", head), value.parts[0], fn, line)
             if chosen:
                 for one in chosen:
                     yield from self._evaluate_listed(one, (*seen, ("element", one.value)))
@@ -1551,6 +1565,10 @@ class FlowValues:
             return
         if (last in _OF_FIRST or (last.startswith("create") and "Options::" in value.text)) and value.parts:
             yield from self._evaluate(value.parts[0], fn, line, seen)
+            return
+        if last in SHARES and len(value.parts) == 1:
+            for one in self._evaluate(value.parts[0], fn, line, seen):
+                yield one if one.text is None else one._replace(text=f"$(find {one.text})")
             return
         if last == "getCameraInfoTopic" and len(value.parts) == 1:
             for one in self._evaluate(value.parts[0], fn, line, seen):
