@@ -350,10 +350,18 @@ class FlowValues:
         beside = [one for one in found if one.beside][:1]
         if known and beside:
             return [*(one._replace(how="partly") for one in known), *beside]
-        in_part = list({one.shown: one for one in found if one.shown}.values())
-        if len(in_part) > _MOST_IN_PART or not all(one.shown for one in found):
-            in_part = [one._replace(more=True) for one in in_part]
-        return known or in_part[:_MOST_IN_PART] or found[:1] or [FlowValue(None, "unresolved", "no value is given")]
+        if known:
+            return known
+        # What begins with something unknown is no name, whatever follows.
+        in_part = list({one.shown: one for one in found if one.shown[:1] not in ("", "<")}.values())
+        if in_part:
+            is_more = len(in_part) > _MOST_IN_PART or any(one.shown[:1] in ("", "<") for one in found)
+            return [one._replace(more=True) for one in in_part[:_MOST_IN_PART]] if is_more else in_part
+        if len(found) > 1 and found[0].shown:
+            shown = list(dict.fromkeys(one.shown for one in found))
+            is_more = "" in shown or len(shown) > _MOST_IN_PART
+            return [found[0]._replace(shown="" if is_more else OR.join(shown))]
+        return found[:1] or [FlowValue(None, "unresolved", "no value is given")]
 
     def find_only_text(self, value: FlowExpr, fn: Fn) -> str | None:
         """The first text that an expression may be worth, None where something unknown may be in its place."""
@@ -1979,10 +1987,10 @@ def spell_pattern(values: Iterable[FlowValue]) -> str:
     found: dict[str, None] = {}
     for one in values:
         if one.text is None:
-            pattern = _BRACKETS.sub("*", one.shown)
-            if one.more or not pattern:
+            patterns = _BRACKETS.sub("*", one.shown).split(OR)
+            if one.more or not patterns[0]:
                 return ""
-            found[f"/{pattern}" if pattern[0] == "*" else pattern] = None
+            found.update((f"/{each}" if each[0] == "*" else each, None) for each in patterns)
     return OR.join(found)
 
 

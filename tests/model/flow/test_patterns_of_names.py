@@ -59,7 +59,9 @@ def test_a_variable_of_the_environment_is_called_by_its_name():
 
 
 def test_a_call_with_several_names_has_a_pattern_where_each_has():
-    code = CODE.format("name = robot + '/a' if count else 'b/' + robot\n            " + MADE.format("name"))
-    assert [one.pattern for one in graph({"p/n.py": code}, ros=1).coverage.unresolved] == ["/*/a or b/*"]
+    code = CODE.format("name = robot + '/a' if count else robot + '/b'\n            " + MADE.format("name"))
+    assert [one.pattern for one in graph({"p/n.py": code}, ros=1).coverage.unresolved] == ["/*/a or /*/b"]
+    code = CODE.format("name = 'a/' + robot if count else 'b/' + robot\n            " + MADE.format("name"))
+    assert [one.pattern for one in graph({"p/n.py": code}, ros=1).coverage.unresolved] == ["a/* or b/*"]
     code = CODE.format("name = robot + '/a' if count else robot\n            " + MADE.format("name"))
     assert [one.pattern for one in graph({"p/n.py": code}, ros=1).coverage.unresolved] == [""]
