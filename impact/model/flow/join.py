@@ -424,6 +424,9 @@ class Join:
                 if part.fixed:
                     given, namespace = _keep_fixed(given, part.fixed, namespace, start.namespace)
                 instance = make_instance(launch, own, given, namespace)
+                if start.kind == "composable" and start.generation == 1:
+                    manager = containers.get(start.container.value or "") or _give_container(start, {})
+                    instance = instance._replace(process=make_instance(launch, "", manager))
                 node = structs.replace(
                     part.node, id=instance.name, name=instance.name, started=f"{at[0]}:{at[1]}",
                     uncertain=instance.uncertain,
@@ -1084,6 +1087,10 @@ class Join:
             return text, value.how, ""
         one = generation == 1
         try:
+            process = self._find_process(site, owner) if one else None
+            if process is not None:
+                instance, full = process, process.name
+                namespace, _, own = full.rpartition("/")
             if one:
                 if site.prefix and text[:1] not in ("/", "~", "{"):
                     text = f"~{text}" if site.prefix == "~" else f"{site.prefix}/{text}"
@@ -1112,6 +1119,14 @@ class Join:
         if name != plain:
             return name, "launch", ""
         return name, "given" if site.implied and value.how == "literal" else value.how, ""
+
+    def _find_process(self, site: Site, owner: Owner) -> Instance | None:
+        """The node whose process a nodelet is in, where the handle of a site is that of the process; None for all
+        else."""
+        process = owner.instance.process if isinstance(owner, Running) and owner.instance is not None else None
+        if process is None or not isinstance(owner, Running):
+            return None
+        return process if self.sites.handles.is_of_process(site.use, owner.limit_values()) else None
 
     def _make_publishes(self, statement: Statement, owner: Owner) -> Iterator[Publish]:
         use = statement.use
