@@ -12,7 +12,8 @@ import msgspec
 
 from ....edges import processes
 from ....edges.memory import cache_in_derived
-from ...facts.kinds import find_kind
+from ...facts.kinds import FLOW, find_kind
+from ...facts.launch.python_walk import ENTRIES
 from ...facts.store import recall
 from ..launch.fill import ChangedFiles
 from ..launch.follow import MOST_ACTIONS, follow
@@ -278,13 +279,24 @@ def list_launch_files(workspace: Workspace) -> Iterator[tuple[str, str, str]]:
         start = len(package.path) + 1 if package.path else 0
         for path in sorted(package.linked.files):
             inner = path[start:]
-            if is_launch(inner) and find_folder_role(inner) != "test":
+            if find_folder_role(inner) != "test" and (is_launch(inner) or _describes_launch(workspace, path)):
                 yield package.name, path, inner
     for entry in workspace.extraction.tree.list_entries():
         path = entry.path
         launches = find_kind(path) in ("launch_xml", "launch_yaml") and is_launch(path)
         if launches and find_folder_role(path) != "test" and workspace.discovered.find_owner(path) is None:
             yield "", path, path
+
+
+def _describes_launch(workspace: Workspace, path: str) -> bool:
+    """Whether a file is a launch file by what it defines, wherever its package keeps it and installs it from."""
+    from .workspace import get_facts
+
+    extraction = get_facts(workspace)
+    if extraction.kinds.get(path) != FLOW["python"]:
+        return False
+    facts = extraction.get_facts(path)
+    return facts.facts is not None and any(function.name in ENTRIES for function in facts.facts.functions)
 
 
 def is_launch(path: str) -> bool:

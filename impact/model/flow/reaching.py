@@ -88,6 +88,10 @@ class ReachingValues:
         """Values come to those that were assigned before."""
         self.held += [Held(rank, value, guard, stays) for value in values]
 
+    def lessen(self) -> None:
+        """Values that were assigned before hold as a default does: a parameter takes their place where it has one."""
+        self.held = [one._replace(value=lessen(one.value)) for one in self.held]
+
     def list_chosen(self, spell: Callable[[Sequence[int]], str], negate: Callable[[int], str]) -> list[FlowValue]:
         """What is left; of several texts each with the condition under which it is assigned here, or is not replaced.
         spell: the condition that some guards of the function are, from the nearest; negate: that of one that does not
@@ -194,6 +198,11 @@ def reaches(
     kept = fn.list_guards_around(last.guard) if last is not None else ()
     turns = set(fn.list_guards_around(at.guard)).intersection(fn.list_guards_around(written.guard)).difference(kept)
     return any(fn.facts.guards[guard].kind in LOOPS for guard in turns)
+
+
+def lessen(value: FlowValue) -> FlowValue:
+    """A value as one that holds where a parameter has none."""
+    return value._replace(how="default") if value.text is not None and value.how in ("literal", "given") else value
 
 
 def _may_hold(test: VariableTest, value: FlowValue) -> bool:

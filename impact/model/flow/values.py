@@ -31,7 +31,7 @@ from .named_in_turns import DefaultGiven, NamesInTurns
 from .names import OR, is_open, make_open_part, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
 from .printing import find_format_place
-from .reaching import LOOPS, FlowValue, ReachingValues
+from .reaching import LOOPS, FlowValue, ReachingValues, lessen
 from .types import Cls, split_name
 
 _Row = TypeVar("_Row")
@@ -212,6 +212,17 @@ class _Known(NamedTuple):
     asking: tuple[tuple, ...]
     depth: int
     steps: int
+
+
+class _Reference(NamedTuple):
+    """A variable that is passed to a function by reference. place: of the argument; inner: the parameter that it is in
+    the function that is called."""
+
+    caller: Fn
+    call: FlowCall
+    place: int
+    target: Fn
+    inner: Variable
 
 
 # What is the same of a body of code whatever else is known.
@@ -523,7 +534,8 @@ class FlowValues:
         def list_known(value: FlowExpr) -> list[tuple[str, How]] | None:
             filling = self._find_filling(value, fn)
             if filling is not None:
-                return [("true", "launch")] if self._is_set(filling, inner) else None
+                use, values = filling
+                return [("true", "launch")] if values._is_set(use, inner) else None
             nonlocal asks_open
             found = [one for one in self._evaluate(value, fn, guard.line, inner) if not one.uncalled]
             asks_open = asks_open or any(
@@ -542,16 +554,30 @@ class FlowValues:
         decided = ConditionReader(fn.source.facts.language == "cpp", list_known).decide_guard(guard)
         return decided._replace(asks_open=asks_open and decided.holds is None)
 
-    def _find_filling(self, value: FlowExpr, fn: Fn) -> FrameworkCall | None:
-        """The use that reads a parameter into a variable, and tells whether it was there; None for all else."""
+    def _find_filling(self, value: FlowExpr, fn: Fn) -> tuple[FrameworkCall, FlowValues] | None:
+        """The use that reads a parameter into a variable, and tells whether it was there, with the code as it is
+        reached; also where a function does so with what it is passed, and returns that. None for all else."""
         same = fn.list_calls(value.text) if value.kind == "call" else ()
         call = next((call for call in same if call.arguments == value.parts), None)
-        use = self.calls.find_use(fn, call) if call is not None else None
-        if use is None or use.row.does != "parameter" or not use.row.variable:
+        if call is None:
             return None
+        use = self.calls.find_use(fn, call)
+        if use is not None:
+            return (use, self) if self._fills(use) else None
+        targets = self.code.list_targets(call.callee, fn)
+        returned = [one for one in targets[0].facts.calls if one.returned] if len(targets) == 1 else []
+        use = self.calls.find_use(targets[0], returned[0]) if len(returned) == 1 else None
+        if use is None or not self._fills(use):
+            return None
+        return use, self.limit_to_calls({**self.way, targets[0]: call})
+
+    def _fills(self, use: FrameworkCall) -> bool:
+        """Whether a use reads a parameter into a variable."""
+        if use.row.does != "parameter" or not use.row.variable:
+            return False
         target = self.calls.find_argument(use, use.row.variable)
         default = self.calls.find_argument(use, use.row.default) if use.row.default else None
-        return use if target is not None and target is not default else None
+        return target is not None and target is not default
 
     def _is_set(self, use: FrameworkCall, seen: tuple) -> bool:
         """Whether a launch sets the parameter that a use reads."""
@@ -1053,6 +1079,7 @@ class FlowValues:
             elif _is_sure(values):
                 found.assign(values, step.call.guard, 2)
             else:
+                found.lessen()
                 found.add(values, step.call.guard, 2)
         # In the next turn of a loop.
         loops = {guard for guard in around if fn.facts.guards[guard].kind in LOOPS}
@@ -1142,14 +1169,23 @@ class FlowValues:
     def _list_filled(
         self, variable: Variable, seen: tuple, origins: Origins | None
     ) -> list[tuple[FrameworkCall, list[FlowValue]]]:
-        """The calls that read a parameter into a variable, with what it is then."""
-        return [
+        """The calls that read a parameter into a variable, with what it is then; also those of functions that do so
+        with what they are passed by reference."""
+        found = [
             (use, list(self._evaluate_parameter(use, seen)))
             for use in self.filled.get(variable, ())
             if origins is None
             or (target := self.calls.find_argument(use, use.row.variable)) is None
             or self.origins.may_be_of(target.text, use.fn, origins)
         ]
+        for one in self._list_references(variable, seen):
+            if origins is None or self.origins.may_be_of(one.call.arguments[one.place].text, one.caller, origins):
+                values = self.limit_to_calls({**self.way, one.target: one.call})
+                values._left = self._left
+                rows = values._list_filled(one.inner, (*seen, one.inner), None)
+                found += [(use._replace(fn=one.caller, call=one.call), filled) for use, filled in rows]
+                self._left = values._left
+        return found
 
     def _select_given(self, rows: Sequence[tuple[Fn, Assignment]]) -> tuple[Sequence[tuple[Fn, Assignment]], bool]:
         """Of assignments those that may be with the arguments of the command line; where an option that is given sets
@@ -1186,6 +1222,8 @@ class FlowValues:
         if variable.kind == "global" and self._runs_once(writer, rows):
             return self._follow_module(writer, rows, found, seen)
         sure = [use for use, values in filled if use.fn is writer and _is_sure(values)]
+        unsure = [use.call.line for use, values in filled if use.fn is writer and not _is_sure(values)]
+        read = {use.call.line for use, _ in filled if use.fn is writer}
         tested = False
         for each in rows:
             # What a parameter that surely has a value is read into is worth nothing else any more.
@@ -1193,7 +1231,11 @@ class FlowValues:
                 continue
             if self.decide_branch(each.guard, writer, seen).holds is not False and found.may_run(each.guard):
                 tested = found.exclude(each.guard) or tested
-                found.add(_mark_unknown(self._evaluate_written(each, writer, origins, seen)), each.guard)
+                values = _mark_unknown(self._evaluate_written(each, writer, origins, seen))
+                # Before a parameter is read, or where it is not there.
+                tests = {writer.facts.guards[place].line for place in writer.list_guards_around(each.guard)}
+                is_default = any(each.line < line for line in unsure) or not read.isdisjoint(tests)
+                found.add(map(lessen, values) if is_default else values, each.guard)
         return found.list_values() if tested else _restore_alone(found.list_values())
 
     def _runs_once(self, fn: Fn, rows: list[Assignment]) -> bool:
@@ -1350,8 +1392,8 @@ class FlowValues:
         around = fn.list_guards_around(_find_guard(fn, line))
         return bool(around) and fn.facts.guards[around[0]].kind in LOOPS
 
-    def _evaluate_references(self, variable: Variable, seen: tuple) -> Iterator[FlowValue]:
-        """What functions write into a variable that is passed to them by reference."""
+    def _list_references(self, variable: Variable, seen: tuple) -> Iterator[_Reference]:
+        """The calls that a variable is passed to by reference."""
         passed = self.code.list_passed(variable)
         if passed and self._works:
             self._works[-1].note_depth(_FAR, len(seen) - self._outer)
@@ -1360,14 +1402,19 @@ class FlowValues:
         for caller, call, place in passed:
             for target in self.code.list_targets(call.callee, caller):
                 parameters = target.facts.parameters
-                if place < len(parameters) and "&" in parameters[place].type and "const" not in parameters[place].type:
+                if place < len(parameters) and _is_written_through(parameters[place].type):
                     inner = self.code.identify(parameters[place].name, target)
                     if not self._is_in(inner, seen):
-                        # Through this call alone.
-                        values = self.limit_to_calls({**self.way, target: call})
-                        values._left = self._left
-                        yield from values.evaluate_writes(inner, (*seen, inner))
-                        self._left = values._left
+                        yield _Reference(caller, call, place, target, inner)
+
+    def _evaluate_references(self, variable: Variable, seen: tuple) -> Iterator[FlowValue]:
+        """What functions write into a variable that is passed to them by reference."""
+        for one in self._list_references(variable, seen):
+            # Through this call alone.
+            values = self.limit_to_calls({**self.way, one.target: one.call})
+            values._left = self._left
+            yield from values.evaluate_writes(one.inner, (*seen, one.inner))
+            self._left = values._left
 
     def _is_passed_before(self, variable: Variable, fn: Fn, line: int) -> bool:
         """Whether a variable is surely passed on before a line of a function is come to, 0 for any."""
@@ -2142,6 +2189,11 @@ def _format(value: FlowValue, spec: str | None) -> FlowValue:
 def _is_type(value: FlowExpr) -> bool:
     """Whether what stands for a default is the type of the parameter alone: `Parameter.Type.INTEGER`."""
     return value.kind == "name" and value.text.rpartition(".")[0].endswith("Parameter.Type")
+
+
+def _is_written_through(type: str) -> bool:
+    """Whether a function may write into what it is passed for a parameter of a type."""
+    return ("&" in type or "*" in type) and "const" not in type
 
 
 def _is_sure(values: list[FlowValue]) -> bool:

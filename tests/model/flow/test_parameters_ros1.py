@@ -89,7 +89,7 @@ def test_a_name_in_cpp(tmp_path, handle, read, launch, topic):
 
 @pytest.mark.parametrize(("name", "expected"), [
     ("x", [("/fallback", "partly"), ("", "unresolved")]),
-    ("y", ("/fallback", "literal")),
+    ("y", ("/fallback", "default")),
 ])  # fmt: skip
 def test_a_handle_of_an_unknown_namespace(tmp_path, name, expected):
     """It may be any: a parameter that some namespace has may be meant."""
