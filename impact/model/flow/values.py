@@ -22,7 +22,7 @@ from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number, select_overloads
 from .conditions import ConditionReader, DecidedCondition, is_truth
 from .documents import SHARES, Documents
-from .elements import DEFAULT, SETTING, Elements, KnownCount, ListElement, find_begun
+from .elements import DEFAULT, SETTING, Elements, KnownCount, ListElement, find_begun, is_fallback
 from .given_lists import GivenLists
 from .graph import NOT_GIVEN, How
 from .literals import spell_number
@@ -414,7 +414,7 @@ class FlowValues:
             yield from self._evaluate_name(value.text, fn, line, seen)
         elif kind == "join":
             yield from self._evaluate_join(value, fn, line, seen)
-        elif kind == "choice" and len(value.parts) == 3 and _is_fallback(value):
+        elif kind == "choice" and len(value.parts) == 3 and is_fallback(value):
             yield from self._evaluate_fallback(value, fn, line, seen)
         elif kind == "choice" and len(value.parts) == 3:
             yield from self._evaluate_choice(value, fn, line, seen)
@@ -2262,15 +2262,6 @@ def _find_guard_before(fn: Fn, line: int) -> int:
     """The place of the innermost guard around a line that begins before the line, -1 for none."""
     around = fn.list_guards_around(_find_guard(fn, line))
     return next((place for place in around if fn.facts.guards[place].line < line), -1)
-
-
-def _is_fallback(value: FlowExpr) -> bool:
-    """Whether a choice is one between what is asked and something else: `a or b`, `a if a else b`."""
-    asked, first = value.parts[0].text, value.parts[1]
-    written = f"self.{first.text[5:]}" if first.text.startswith("this.") else first.text
-    return (first.kind == "name" and asked == written) or (
-        first.kind == "call" and asked.startswith(f"{written}(") and asked.endswith(")")
-    )
 
 
 def spell_condition(kind: str, text: str) -> str:

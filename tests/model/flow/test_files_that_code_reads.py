@@ -60,6 +60,7 @@ def list_topics(tmp_path, load=SHARE + OPEN, make=ODOM, text=TEXT, launch=""):
 
 @pytest.mark.parametrize("load", [
     SHARE + OPEN,
+    SHARE + OPEN + " or {}",
     SHARE + "c = yaml.load(open(path), Loader=yaml.SafeLoader)",
     'path = Path(get_package_share_directory("rig")) / "config" / "rig.yaml"\n            ' + OPEN,
     'path = get_package_share_directory("rig") + "/config/rig.yaml"\n            ' + OPEN,
