@@ -144,7 +144,9 @@ class NodeHandles:
                 told = self._find_controller_handle(one, place[0])
                 yield from found or [told or private or self._resolve_unless_handle(value, fn)]
                 return
-        yield private or _OWN
+        # A member of an object that a call gives, which no class of the code is.
+        unknown = "()." in value.text and not self.code.list_class_bodies(variable.owner)
+        yield private or (_LOST if unknown else _OWN)
 
     def _find_controller_handle(self, fn: Fn, place: int) -> FlowValue | None:
         """What ros_control gives the method that begins a controller for a parameter of it, None for all else: the
