@@ -657,6 +657,8 @@ class FlowCode:
         if depth == 0 and path in fn.identities:
             return fn.identities[path]
         found, rest = self.resolve_variable(path, fn)
+        if "()." in path and (member := self._find_member_of_given(path, fn, depth)) is not None:
+            found, rest = member
         if rest and found.kind == "global" and fn.source.facts.language == "python":
             place = self.modules.find("constant", f"{found.name}.{rest[0]}", fn.source, fn.scope)
             found, rest = (Variable("global", *place), rest[1:]) if place is not None else (found, rest)
@@ -667,6 +669,18 @@ class FlowCode:
         if depth == 0:
             fn.identities[path] = found
         return found
+
+    def _find_member_of_given(self, path: str, fn: Fn, depth: int) -> tuple[Variable, tuple[str, ...]] | None:
+        """The member of an object of a class of C++ that a call gives, and the parts that follow it; None where the
+        path has no such object. Of `Settings::instance().handle` it is that of Settings."""
+        callee, _, members = path.rpartition("().")
+        parts = _split_path(members)
+        if not parts or fn.source.facts.language != "cpp" or (depth > 4 and "." in callee):
+            return None
+        cls = self.find_class_of(self.resolve_call_type(callee, fn, min(depth, 4)), fn)
+        if cls is None:
+            return None
+        return Variable("member", self._find_declaring_class(cls, parts[0]).key, parts[0]), parts[1:]
 
     @cache_method
     def list_functions(self, cls: Cls) -> list[Fn]:

@@ -37,7 +37,7 @@ _ASKED: dict[str, Callable[..., Any]] = {
     "lower": str.lower, "upper": str.upper, "strip": str.strip,
 }  # fmt: skip
 _LENGTHS = frozenset(("size", "length"))
-_CASTS = frozenset(("int", "float", "bool", "double", "str"))
+CASTS = frozenset(("int", "float", "bool", "double", "str"))
 _Known = list[tuple[Any, frozenset[How]]]
 
 
@@ -144,7 +144,7 @@ class ConditionReader:
             if node.func.attr in _LENGTHS and not node.args:
                 return self._measure(node.func.value)
         elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and len(node.args) == 1:
-            ask = (lambda text: text) if node.func.id in _CASTS else None
+            ask = (lambda text: text) if node.func.id in CASTS else None
             inner = node.args[0]
             if node.func.id == "len":
                 return self._measure(inner)

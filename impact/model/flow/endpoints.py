@@ -234,7 +234,16 @@ class Sites:
         framework's function does, any endpoint when left out."""
         rows = self.calls.table.calls.get(get_tail(fn.name), ())
         meant = any(row.does == does if does else row.does in _ROLES for row in rows)
-        return bool(fn.facts.parameters) and meant and not fn.is_lambda
+        stands = bool(fn.facts.parameters) and meant and not fn.is_lambda
+        return stands and (bool(does) or self._is_called_as_framework(fn))
+
+    @cache_method
+    def _is_called_as_framework(self, fn: Fn) -> bool:
+        """Whether callers of a function of such a name, if there are any, look like callers of the framework. Those of
+        a method of an object that is no node do not, so that it is followed as any other function."""
+        named = self.code.list_calls_named((get_tail(fn.name),))
+        callers = [(one, call) for one, call in named if fn in self.code.list_targets(call.callee, one)]
+        return not callers or any(self.calls.find_use(one, call) is not None for one, call in callers)
 
     def _expand_rows(self, use: FrameworkCall) -> Iterator[FrameworkCall]:
         """The use for each row of the list that its arguments walk through together, with what the row has for them:

@@ -155,7 +155,9 @@ class NodeHandles:
                 return
         if "NodeHandle" in self.code.find_declared_type(variable, fn)[0] and not self._is_pointer(variable, fn):
             self._is_made_anew = True
-        yield private or _OWN
+        # A member of an object that a call gives, which no class of the code is.
+        unknown = "()." in value.text and not self.code.list_class_bodies(variable.owner)
+        yield private or (_LOST if unknown else _OWN)
 
     def _find_controller_handle(self, fn: Fn, place: int) -> FlowValue | None:
         """What ros_control gives the method that begins a controller for a parameter of it, None for all else: the

@@ -20,7 +20,7 @@ from ...facts.python.text import format_pieces, split_percent_format
 from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number, select_overloads
-from .conditions import ConditionReader, DecidedCondition, is_truth
+from .conditions import CASTS, ConditionReader, DecidedCondition, is_truth
 from .documents import SHARES, Documents
 from .elements import DEFAULT, SETTING, Elements, KnownCount, ListElement, find_begun, is_fallback
 from .given_lists import GivenLists
@@ -1355,9 +1355,9 @@ class FlowValues:
         words.update(variable.name for variable in self.filled)
         asked = group_pairs((use.fn, f"{use.call.callee}()") for use in uses if not use.call.target)
         for fn, callees in asked.items():
-            # `self.mode = self.get_parameter("mode").value`
-            rows = (each for each in fn.facts.assignments if each.target and "()" in each.value.text)
-            words.update(get_tail(each.target) for each in rows if each.value.text.startswith(tuple(callees)))
+            # `self.mode = self.get_parameter("mode").value`, `self.go = bool(self.get_parameter("go").value)`
+            rows = ((each.target, _find_cast(each.value).text) for each in fn.facts.assignments if each.target)
+            words.update(get_tail(target) for target, text in rows if "()" in text and text.startswith(tuple(callees)))
         return frozenset(words)
 
     def _evaluate_written(
@@ -1586,6 +1586,10 @@ class FlowValues:
                 return
         if python and last == "format" and head and not head.endswith("()") and value.receiver is None:
             yield from self._evaluate_format(value, head, fn, line, seen)
+            return
+        if python and value.text == "bool" and len(value.parts) == 1:
+            # Of texts too it is asked later whether they stand for what is true.
+            yield from self._evaluate(value.parts[0], fn, line, seen)
             return
         if python and value.text == "int" and len(value.parts) == 1:
             for one in self._evaluate(value.parts[0], fn, line, seen):
@@ -2097,6 +2101,11 @@ def _find_read_call(path: str, value: FlowExpr) -> FlowExpr | None:
     while value.receiver is not None and get_tail(path) in _SAME:
         path = path.rpartition(".")[0]
     return value.receiver if path.endswith("()") else None
+
+
+def _find_cast(value: FlowExpr) -> FlowExpr:
+    """What an expression of Python makes a truth, a number or a text of; itself where it makes none."""
+    return value.parts[0] if value.kind == "call" and value.text in CASTS and len(value.parts) == 1 else value
 
 
 def _mentions(value: FlowExpr, path: str) -> bool:
