@@ -17,9 +17,10 @@ from ...facts.store import Store, recall
 from ..flow.code import Fn, Variable, get_tail
 from ..flow.definitions import describe_interfaces
 from ..flow.endpoints import Site, Statement
+from ..flow.file_selection import get_facts
 from ..flow.graph import LOST_INCLUDE, Endpoint, Graph, Publish, Unresolved
 from ..flow.join import Join
-from ..flow.workspace import get_facts, get_flow, list_code
+from ..flow.workspace import get_flow, list_code
 from ..workspace import Workspace
 from .places import Uses
 from .reading import Escape, FieldReader, Holder, ReadAt, Reading, select_parameters

@@ -1,4 +1,4 @@
-"""Which files of a tree the message flow reads, told before any of them is read."""
+"""Which files of a tree the message flow reads, told before any of them is read, and their facts."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import hashlib
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
-from ...facts.extract import ExtractedFacts
+from ...facts.extract import ExtractedFacts, extract_all
 from ...facts.kinds import FLOW, find_kind
 from ...source_keys import compute_code_stamp
 from ...tree.paths import Tree
@@ -60,6 +60,14 @@ def make_code_selector(tree: Tree) -> Callable[[str], str | None]:
         return kind if any(is_code(path, start, name) for start, name in own) else None
 
     return select_kind
+
+
+def get_facts(workspace: Workspace) -> ExtractedFacts:
+    """The flow facts of a workspace: those extracted with it, or else read now."""
+    main = workspace.extraction
+    if main.second is None:
+        main.second = extract_all(main.tree, main.store, kind_of=make_code_selector(main.tree))
+    return main.second
 
 
 def _list_doubtful(paths: Iterable[str], roots: Collection[str]) -> set[str]:

@@ -26,7 +26,7 @@ from ..workspace import Workspace
 from .bridges import add_bridges
 from .endpoints import LOST
 from .escape_analysis import EscapeAnalysis, UnknownReasons
-from .file_selection import compute_stamp
+from .file_selection import compute_stamp, get_facts
 from .graph import Graph
 from .join import Join, Running
 from .names import NameRefused, normalise, parse_ros2_rule, resolve_ros1_name, resolve_ros2_name
@@ -290,8 +290,6 @@ def list_launch_files(workspace: Workspace) -> Iterator[tuple[str, str, str]]:
 
 def _describes_launch(workspace: Workspace, path: str) -> bool:
     """Whether a file is a launch file by what it defines, wherever its package keeps it and installs it from."""
-    from .workspace import get_facts
-
     extraction = get_facts(workspace)
     if extraction.kinds.get(path) != FLOW["python"]:
         return False

@@ -8,7 +8,7 @@ from functools import cached_property
 import msgspec
 
 from ....edges.memory import cache_in_derived
-from ...facts.extract import ExtractedFacts, extract_all
+from ...facts.extract import extract_all
 from ...facts.flow import FlowFile
 from ...facts.kinds import find_kind
 from ...facts.store import Store, recall
@@ -19,7 +19,7 @@ from .build_constants import BuildConstants, GivenMacros
 from .callers import Callers, build_callers
 from .defined import DefinedInterfaces
 from .documents import Documents
-from .file_selection import BUILD, compute_code_key, is_code, list_run_by_hand, make_code_selector
+from .file_selection import BUILD, compute_code_key, get_facts, is_code, list_run_by_hand, make_code_selector
 from .graph import COPIED, Graph, Unresolved
 from .join import Join
 from .launches import Launch
@@ -111,14 +111,6 @@ def link_for_flow(tree: Tree, store: Store, jobs: int | None = None, progress: P
         tree, store, jobs=jobs, progress=progress, kind_of=select_build, second=make_code_selector(tree)
     )
     return link(tree, extraction, store, None, Watched(), jobs)
-
-
-def get_facts(workspace: Workspace) -> ExtractedFacts:
-    """The flow facts of a workspace: those extracted with it, or else read now."""
-    main = workspace.extraction
-    if main.second is None:
-        main.second = extract_all(main.tree, main.store, kind_of=make_code_selector(main.tree))
-    return main.second
 
 
 def list_code(workspace: Workspace) -> dict[str, str]:

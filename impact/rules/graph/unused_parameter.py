@@ -23,7 +23,8 @@ import re
 from collections.abc import Iterator
 
 from ...facts.flow import FlowCall, FlowFunction
-from ...model.flow.workspace import get_facts, list_code
+from ...model.flow.file_selection import get_facts
+from ...model.flow.workspace import list_code
 from ..vocabulary import At, Diagnostic, Text, Workspace, rule
 
 _READS = frozenset(("getParam", "getParamCached", "param", "get_parameter", "get_parameter_or"))
