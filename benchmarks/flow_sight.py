@@ -17,11 +17,13 @@ usage: flow_sight.py sites --set NAME --clones FOLDER [--number 20] [--seed 18]
        flow_sight.py draw --set NAME --clones FOLDER [--number 20] [--seed 18]
        flow_sight.py score --set NAME
        flow_sight.py recheck --set NAME --clones FOLDER
+       flow_sight.py calls --set NAME --clones FOLDER
 
 `sites` writes the sites alone, which need no graph: they can be judged before anybody runs `graph`. `draw` writes the
 records without verdicts, and keeps what was said before of sites and of known endpoints; `score` prints the figures of
 those that have one; `recheck` prints which endpoints that were judged right the graph of today still has, which wrong
-ones it still states, and which sites it has.
+ones it still states, and which sites it has. `calls` prints of each system the API calls of which all is known, those
+whose name is known in part, as docs/graph.md says it under Coverage, and the others.
 """
 
 from __future__ import annotations
@@ -222,6 +224,26 @@ def recheck(clones: Path, systems: list[dict], records: list[dict]) -> int:
     return failures
 
 
+def count_calls(clones: Path, systems: list[dict]) -> int:
+    """Prints how many API calls of each system and of all are resolved, known in part, and neither. Returns of how many
+    systems there is no graph, or no clone; these are named too."""
+    total: Counter[str] = Counter()
+    failures = 0
+    for system in systems:
+        try:
+            found = read_graph(find_clone(clones, system["repo"]), system["commit"])["coverage"]
+        except GraphFailed as error:
+            print(error, file=sys.stderr)
+            failures += 1
+            continue
+        lost = found["calls"] - found["resolved"] - found["in_part"]
+        own = {"calls": found["calls"], "resolved": found["resolved"], "in part": found["in_part"], "neither": lost}
+        total.update(own)
+        print(system["repo"], ", ".join(f"{count} {what}" for what, count in own.items()))
+    print("all", ", ".join(f"{count} {what}" for what, count in total.items()))
+    return failures
+
+
 def is_call(one: dict) -> bool:
     """Whether a record is of a site that is a call: what the graph has and a search of the text finds is one; readers
     judged the others."""
@@ -248,7 +270,7 @@ def score(records: list[dict]) -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("command", choices=("sites", "draw", "score", "recheck"))
+    parser.add_argument("command", choices=("sites", "draw", "score", "recheck", "calls"))
     parser.add_argument("--set", required=True)
     parser.add_argument("--clones", type=Path)
     parser.add_argument("--number", type=int, default=20)
@@ -259,6 +281,8 @@ def main() -> None:
         score([json.loads(line) for line in drawn.read_text().splitlines()])
         return
     systems = [json.loads(line) for line in (SETS / f"{options.set}.systems.jsonl").read_text().splitlines()]
+    if options.command == "calls":
+        sys.exit(count_calls(options.clones, systems) > 0)
     if options.command == "recheck":
         sys.exit(recheck(options.clones, systems, [json.loads(line) for line in drawn.read_text().splitlines()]) > 0)
     before = [json.loads(line) for line in drawn.read_text().splitlines()] if drawn.exists() else []

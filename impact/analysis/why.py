@@ -10,6 +10,7 @@ from typing import NamedTuple
 from ...edges.console import escape, format_count
 from ..model.cmake.build import At, CMakeUse
 from ..model.view import Need, TargetView
+from ..model.workspace import Package
 from ..rules.packages.undeclared_needs import choose_name
 from ..rules.rule import Finding
 from ..targets.changes import iterate_in_force
@@ -214,7 +215,7 @@ def _find_uses(view: TargetView, name: str) -> tuple[tuple[str, ...], tuple[str,
     for package in view:
         closure = None
         for need in view.list_needs(package):
-            if name not in (need.subject, *_list_names(view, need)):
+            if name not in (need.subject, *_list_names(view, package, need)):
                 continue
             used.append(f"{need.at.path}:{need.at.line}")
             closure = view.build_environment(package) if closure is None else closure
@@ -227,9 +228,9 @@ def _find_uses(view: TargetView, name: str) -> tuple[tuple[str, ...], tuple[str,
     return tuple(used), tuple(undeclared)
 
 
-def _list_names(view: TargetView, need: Need) -> frozenset[str]:
+def _list_names(view: TargetView, package: Package, need: Need) -> frozenset[str]:
     """What may be declared for a need: the name that a person would choose, and keys that install the same."""
-    chosen = choose_name(view, need) or need.providers[0].name
+    chosen = choose_name(view, package, need) or need.providers[0].name
     debs = view.list_debs(chosen)
     return frozenset((chosen, *(p.name for p in need.providers if debs and view.list_debs(p.name) == debs)))
 

@@ -301,17 +301,19 @@ class TargetView(WorkspaceOnTarget):
     def is_surely_package(self, package: Package, name: str) -> bool:
         """Whether a name that nobody is known to provide is one of a package of ROS, by its form, by what a manifest of
         the workspace declares, or since a package uses interfaces of it."""
-        return bool(self._guess_by_form(name)) or self._has_interfaces_of(package, name)
+        return bool(self._guess_by_form(name)) or self.has_interfaces_of(package, name)
 
     def _may_be_package(self, package: Package, found: FoundPackage) -> bool:
         """Whether what CMake looks for, and nobody is known to provide, most likely is a package of ROS, and nothing is
         known that could bring something else of its name: no find module, download, folder that was not read or that
         CMake is pointed to, or dependency that is called after it."""
         name, letters = found.name, strip_to_letters(found.name)
-        if self._has_interfaces_of(package, name):
+        if self.has_interfaces_of(package, name):
             return True
+        # What is given to ament_target_dependencies() is a package, unless it is a library that others know.
+        given = any(link.how == "ament" and link.item == name for link in package.build.target_links)
         return (
-            PACKAGE.match(name) is not None
+            (PACKAGE.match(name) is not None or (given and _NAME.fullmatch(name) is not None))
             and not found.placed
             and package.build_type in _TOOLS - {"cmake"}
             and name not in self.workspace.find_modules
@@ -322,13 +324,17 @@ class TargetView(WorkspaceOnTarget):
         )
 
     @cache_method
-    def _has_interfaces_of(self, package: Package, name: str) -> bool:
+    def has_interfaces_of(self, package: Package, name: str) -> bool:
         """Whether a package includes or imports interfaces of a name, as only packages of ROS have them."""
-        folders = tuple(f"{name}/{kind}" for kind in _OF_KIND)
-        if any(use.path.startswith(folders) and _OF_INTERFACE.match(use.path) for use in package.linked.includes):
-            return True
         modules = tuple(f"{name}.{kind.rstrip('/')}" for kind in _OF_KIND)
-        return any(item.module.startswith(modules) for item in package.linked.imports)
+        imported = any(item.module.startswith(modules) for item in package.linked.imports)
+        return imported or self.includes_interfaces_of(package, name)
+
+    @cache_method
+    def includes_interfaces_of(self, package: Package, name: str) -> bool:
+        """Whether a package includes headers of interfaces of a name as ROS 2 calls them."""
+        folders = tuple(f"{name}/{kind}" for kind in _OF_KIND)
+        return any(use.path.startswith(folders) and _OF_INTERFACE.match(use.path) for use in package.linked.includes)
 
     @cached_property
     def declared_somewhere(self) -> frozenset[str]:

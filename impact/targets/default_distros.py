@@ -132,13 +132,15 @@ def choose_default_distros(
         return not fitting[distro].end_of_life or fitting[distro].end_of_life > today
 
     living = {distro for distro in fitting if lives(distro)}
-    # Of a generation that has ended as a whole, the long-term ones are those that people have.
-    standing = living or {distro for distro in fitting if fitting[distro].lts}
-    newest = [distro for distro in fitting if fitting[distro].lts][-1]
+    lasting = [distro for distro in fitting if fitting[distro].lts]
+    newest = lasting[-1]
+    # Of a generation that has ended as a whole, what builds a workspace names the long-term one that people have, and
+    # what only tells of it is as old as it is.
+    standing, told = living or set(lasting), living or {newest}
     named: _Named = {}
     says = ""
     foreign = find_foreign_folders(released, packages)
-    for how, found in _list_named(texts, branches, above, installing, released, foreign, fitting, standing):
+    for how, found in _list_named(texts, branches, above, installing, released, foreign, fitting, told):
         stands = any(distro in standing for places in found.values() for distro in places)
         if found and (stands or not named):
             named, says = found, how
@@ -172,12 +174,12 @@ def _list_named(
     released: Iterable[ReleasedPackage],
     foreign: Collection[str],
     fitting: Collection[str],
-    standing: Collection[str],
+    living: Collection[str],
 ) -> Iterator[tuple[str, _Named]]:
     """What names distros of a workspace, the most telling first, each with how it does.
 
-    foreign: the folders of somebody else's packages. fitting: the distros of the generation. standing: those that
-    people may have."""
+    foreign: the folders of somebody else's packages. fitting: the distros of the generation. living: those that count
+    where a text or a version only tells of them."""
     by_file: tuple[_Named, _Named] = {}, {}
     by_branch: tuple[_Named, _Named] = {}, {}
     for repository, path, text in texts:
@@ -196,11 +198,11 @@ def _list_named(
     yield _BY_FILES, _drop_inner(by_branch[0])
     yield _BY_FILES, _collect_named(above, partial(find_named_distros, distros=fitting))
     told = list(installing)
-    read = partial(_list_installed, standing=standing)
+    read = partial(_list_installed, living=living)
     yield _BY_FILES, _drop_inner(_collect_named((text for text in told if not _is_below(text[1], foreign)), read))
     by_version: _Named = {}
     for one in released:
-        for distro in set(standing).intersection(one.distros):
+        for distro in set(living).intersection(one.distros):
             by_version.setdefault(one.home, {}).setdefault(distro, f"{one.package.name} {one.package.version}")
     yield _BY_VERSIONS, by_version
     yield _BY_FILES, _drop_inner(by_file[1])
@@ -217,11 +219,11 @@ def _collect_named(texts: Iterable[Text], read: Callable[[str], Iterable[str]]) 
     return named
 
 
-def _list_installed(text: str, standing: Collection[str]) -> list[str]:
-    """The distros that a text tells to install, of those that people may have."""
+def _list_installed(text: str, living: Collection[str]) -> list[str]:
+    """The distros that a text tells to install, of those that count."""
     from ..facts.distros import list_installed_distros
 
-    return [distro for distro in list_installed_distros(text) if distro in standing]
+    return [distro for distro in list_installed_distros(text) if distro in living]
 
 
 def _is_below(path: str, folders: Iterable[str]) -> bool:

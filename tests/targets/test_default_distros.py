@@ -292,9 +292,12 @@ def test_released_versions_say_more_than_what_came_with_them(released, texts, in
     assert says in reason
 
 
-def test_of_a_generation_that_has_ended_the_long_term_distros_stand():
+@pytest.mark.parametrize(
+    ("texts", "expected"), [([], "noetic"), ([("", "ci.yml", workflow("melodic"))], "melodic")]
+)
+def test_of_a_generation_that_has_ended_an_old_readme_says_nothing(texts, expected):
     installing = [("", "README.md", "sudo apt install ros-melodic-desktop ros-lunar-desktop")]
-    assert choose_default_distros(1, [], [("", "main")], DISTROS, {}, DAY, installing)[0] == ("melodic",)
+    assert choose_default_distros(1, texts, [("", "main")], DISTROS, {}, DAY, installing)[0] == (expected,)
 
 
 FOREIGN = [

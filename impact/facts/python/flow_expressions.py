@@ -26,6 +26,8 @@ from .text import (
 # Tables of numbers are no part of any flow.
 LONGEST_LIST = 500
 _PLACES = tuple(FlowExpr("number", str(number)) for number in range(16))
+# Methods of dictionaries that tell what is in them.
+_OF_MAPPINGS = frozenset(("get", "items", "keys", "values"))
 _PARTIAL = frozenset(("partial", "functools.partial"))
 # Builtins that keep nothing of what they are given.
 _READING = frozenset(
@@ -237,6 +239,23 @@ class Expressions(SourceText):
         parts.append(head)
         parts.reverse()
         return ".".join(parts), local, called
+
+    def find_chosen(self, node) -> FlowExpr | None:
+        """The elements that literal keys choose of what a path names, as in `config["left"]["topics"]`; None for all
+        else."""
+        keys: list[FlowExpr] = []
+        while node.__class__ is ast.Subscript and node.slice.__class__ is ast.Constant:
+            keys.append(self.make_constant(node.slice))
+            node = node.value
+        inner = node
+        while inner.__class__ is ast.Attribute:
+            inner = inner.value
+        if not keys or inner.__class__ is not ast.Name:
+            return None
+        chosen = FlowExpr("name", self.reach(node)[0])
+        for key in reversed(keys):
+            chosen = FlowExpr("index", "", (chosen, key))
+        return chosen
 
     def follow(self, node, use: str, target: str = "") -> FlowExpr:
         """An expression. use: the Access that it is if it is a path, `read` for none; target: what it is kept in,
@@ -661,6 +680,8 @@ class Expressions(SourceText):
             path, local, receiver = self.reach(func.value)  # type: ignore[attr-defined]
             attribute = func.attr  # type: ignore[attr-defined]
             callee = f"{path}.{attribute}"
+            if receiver is None and attribute in _OF_MAPPINGS:
+                receiver = self.find_chosen(func.value)  # type: ignore[attr-defined]
             if local:
                 self.touch(path, "pass")
             keeping = _KEEPING.get(attribute, -1)

@@ -24,6 +24,7 @@ from ...facts.flow import (
 )
 from ...facts.python.flow_expressions import make_join
 from ...facts.python.text import split_percent_format
+from .build_constants import BuildConstants
 from .includes import SeenFiles
 from .modules import CodeFile, PythonModules
 from .types import UNKNOWN, Cls, FlowType, parse_flow_type, split_name
@@ -272,8 +273,10 @@ class FlowCode:
     taken from it, and it must not be asked again.
     """
 
-    def __init__(self, sources: Iterable[CodeFile], before: FlowCode | None = None):
-        self.sources = list(sources)
+    def __init__(
+        self, sources: Iterable[CodeFile], before: FlowCode | None = None, built: BuildConstants | None = None
+    ):
+        self.sources, self.built = list(sources), built or BuildConstants()
         files = {posixpath.basename(source.path) for source in self.sources}
         self.names = tuple(_collect_names(source, files) for source in self.sources)
         if before is not None and before.names != self.names:
@@ -866,6 +869,11 @@ class FlowCode:
             found = (self.list_definitions(names.pop()) if len(names) == 1 else []) or found
         files = {one.path for _, one in found}
         return found if len(files) < 2 or len({constant.value for constant, _ in found}) == 1 else []
+
+    def list_built_constants(self, name: str, fn: Fn) -> list[tuple[FlowExpr, bool]]:
+        """As BuildConstants.list_values() tells it of a name in a function."""
+        source = fn.source
+        return self.built.list_values(name, source.path, source.package) if source.facts.language == "cpp" else []
 
     def list_seen_sources(self, path: str) -> list[CodeFile]:
         """The C++ files that one sees, itself among them."""

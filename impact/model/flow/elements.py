@@ -225,6 +225,10 @@ class Elements:
             return self._list_called(value, fn, line, depth)
         if value.kind == "join" and value.text == "+":
             return self._list_joined(value, fn, line, depth)
+        if value.kind == "choice" and len(value.parts) == 3 and is_fallback(value):
+            # `a or {}` is the first where that holds anything.
+            held = self._list_held(value.parts[1], fn, line, depth + 1)
+            return held if held and all(one.whole and one.elements for one in held) else None
         if value.kind == "other" and len(value.parts) == 1 and value.text[:1] in ("[", "("):
             # `[... for each in ...]`
             return [HeldList((ListElement(value.parts[0], fn, line, _spell_filters(value, fn, line)),), False)]
@@ -283,6 +287,9 @@ class Elements:
             called = self._find_called(head, fn, line)
             held = self._list_held(value.receiver or called or FlowExpr("name", head), fn, line, depth + 1)
             return _select_column(held, _OF_DICTIONARIES[last]) if held and last in _OF_DICTIONARIES else held
+        if python and head and last == "get" and value.parts:
+            chosen = self.select(value.receiver or FlowExpr("name", head), value.parts[0], fn, line)
+            return self._join_lists(chosen, depth) if chosen else None
         if python and not head and value.text == "range":
             return self._make_range(value, fn, line)
         if python and not head and value.text in _COPIES and len(value.parts) == 1:
@@ -424,6 +431,15 @@ def is_changed(path: str, fn: Fn) -> bool:
     """Whether a function changes what a list holds, other than by an assignment."""
     heads = (call.callee.rpartition(".") for call in fn.facts.calls)
     return any(head == path and last in _PUT | _CHANGES for head, _, last in heads)
+
+
+def is_fallback(value: FlowExpr) -> bool:
+    """Whether a choice is one between what is asked and something else: `a or b`, `a if a else b`."""
+    asked, first = value.parts[0].text, value.parts[1]
+    written = f"self.{first.text[5:]}" if first.text.startswith("this.") else first.text
+    return (first.kind == "name" and asked == written) or (
+        first.kind == "call" and asked.startswith(f"{written}(") and asked.endswith(")")
+    )
 
 
 def find_begun(value: FlowExpr) -> FlowExpr | None:

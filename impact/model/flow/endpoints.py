@@ -391,7 +391,7 @@ class Sites:
         for space in spaces:
             for name in names:
                 lost = (space.text or "").startswith(LOST)
-                if name.text is None and name.shown and name.shown[:1] not in ("/", "~"):
+                if name.text is None and name.shown and name.shown[:1] not in ("/", "~", "<"):
                     inside = "" if lost else join_spaces(space, FlowValue(name.shown)).text or ""
                     found.append(name._replace(shown=inside))
                 elif name.text is None or name.text[:1] in ("/", "~"):

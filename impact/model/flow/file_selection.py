@@ -21,6 +21,7 @@ BUILD = frozenset(
     (*_MANIFESTS, "cmake", "setup_py", "setup_cfg", "plugin_xml", "xml", "msg", "srv", "action")
 )  # fmt: skip
 """Kinds of files that tell what is built of the code, and which interfaces there are."""
+_CODE_READS = BUILD | {"params"}
 
 
 def make_code_selector(tree: Tree) -> Callable[[str], str | None]:
@@ -117,10 +118,10 @@ def compute_stamp(workspace: Workspace) -> bytes:
 
 
 def compute_code_key(workspace: Workspace, second: ExtractedFacts) -> bytes:
-    """Differs whenever the code does, or what is built of it; not with what launch files start. second: its flow
-    facts."""
+    """Differs whenever the code does, what is built of it, or a file that it may read; not with what launch files
+    start. second: its flow facts."""
     packages = [(package.name, package.path, package.build_type) for package in workspace]
-    return _hash_files(repr((workspace.ros, packages)).encode(), ((second, None), (workspace.extraction, BUILD)))
+    return _hash_files(repr((workspace.ros, packages)).encode(), ((second, None), (workspace.extraction, _CODE_READS)))
 
 
 def _hash_files(first: bytes, chosen: Iterable[tuple[ExtractedFacts | None, frozenset[str] | None]]) -> bytes:

@@ -185,13 +185,16 @@ COPIED = "package"
 
 
 class Unresolved(msgspec.Struct, frozen=True):
-    """A call that was not resolved. what: `publisher topic`, `subscriber callback`, `publish`, ...; reason: why."""
+    """A call that was not resolved. what: `publisher topic`, `subscriber callback`, `publish`, ...; reason: why.
+    pattern: of a name that is known in part what it matches, with `*` for any text (`/*/scan`); empty where nothing of
+    it is known."""
 
     what: str
     reason: str
     path: str
     line: int
     written: str = ""
+    pattern: str = ""
 
 
 class PackageCoverage(msgspec.Struct, frozen=True):
@@ -207,7 +210,8 @@ class Coverage(msgspec.Struct, frozen=True):
     publisher). by_default: of the resolved, those whose name is a parameter's default. unread: files with spans that
     did not parse. wrappers: calls inside functions that stand for the framework's own; their callers are counted.
     uncompiled: sources that are left out, since no target compiles them. by_text: what a search of the text finds of
-    calls, by package; missed: those of them that were not understood. Both are of the whole code."""
+    calls, by package; missed: those of them that were not understood. Both are of the whole code. in_part: of the
+    calls that are not resolved those of whose name a whole segment is known."""
 
     calls: int
     resolved: int
@@ -219,6 +223,7 @@ class Coverage(msgspec.Struct, frozen=True):
     uncompiled: tuple[str, ...] = ()
     by_text: tuple[PackageCoverage, ...] = ()
     missed: tuple[Unresolved, ...] = ()
+    in_part: int = 0
 
 
 class OutsideNode(msgspec.Struct, frozen=True):

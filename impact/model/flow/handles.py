@@ -31,6 +31,15 @@ class NodeHandles:
     def __init__(self, calls: Calls):
         self.calls, self.code = calls, calls.code
         self._left = 0
+        # Whether a handle was come to that is made of no other.
+        self._is_made_anew = False
+
+    def is_of_process(self, use: FrameworkCall, values: FlowValues) -> bool:
+        """Whether the handle that a name is given to is made of no other, so that it has the namespace and the
+        remappings of the process, also in a nodelet, whose own come with its getNodeHandle(). values: as for
+        list_prefixes()."""
+        self._is_made_anew = False
+        return len(self.list_prefixes(use, values)) == 1 and self._is_made_anew
 
     def list_prefixes(self, use: FrameworkCall, values: FlowValues) -> list[FlowValue]:
         """What the namespace of the handle may be that a name is given to. values: what expressions are worth where it
@@ -144,6 +153,8 @@ class NodeHandles:
                 told = self._find_controller_handle(one, place[0])
                 yield from found or [told or private or self._resolve_unless_handle(value, fn)]
                 return
+        if "NodeHandle" in self.code.find_declared_type(variable, fn)[0] and not self._is_pointer(variable, fn):
+            self._is_made_anew = True
         # A member of an object that a call gives, which no class of the code is.
         unknown = "()." in value.text and not self.code.list_class_bodies(variable.owner)
         yield private or (_LOST if unknown else _OWN)
@@ -288,10 +299,12 @@ class NodeHandles:
     ) -> Iterator[FlowValue]:  # fmt: skip
         """The namespaces of a handle that is made with some arguments."""
         if not arguments:
+            self._is_made_anew = True
             yield _OWN
             return
         first = arguments[0]
         if self._is_text(first, fn):
+            self._is_made_anew = True
             yield from self._evaluate(first, fn, line, values)
             return
         if first.kind == "index":

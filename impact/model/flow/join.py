@@ -17,10 +17,12 @@ from ...facts.flow import FlowCall, FlowExpr, FlowFile, Guard
 from ..launch.result import EMPTY, Launched, ShareLine, Started
 from ..launch.text import LaunchText, make_unknown, wrap
 from . import nodes as programs_of
+from .build_constants import BuildConstants
 from .called import CalledFunctions
 from .calls import FOREIGN, Calls, FrameworkCall
 from .code import CodeFile, FlowCode, Fn, find_argument, find_parameter, get_tail, list_made
 from .defined import DefinedInterfaces
+from .documents import Documents
 from .endpoints import Site, Sites, Statement, unparse
 from .frameworks import Frameworks, load_frameworks
 from .graph import (
@@ -44,6 +46,7 @@ from .loads import Loaded, list_loaded
 from .names import (
     NameRefused,
     RemappingRule,
+    has_known_segment,
     is_open,
     join_name,
     make_open_part,
@@ -59,7 +62,7 @@ from .plugin_hosts import PluginHosts, select_own
 from .qos import apply_overrides, find_qos, list_overridable
 from .started import Instance, make_instance
 from .types import Cls, FlowType, parse_flow_type
-from .values import ASKING, TOO_MANY, FlowValue, FlowValues, Work, spell_condition
+from .values import ASKING, TOO_MANY, FlowValue, FlowValues, Work, spell_condition, spell_pattern
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _OVERRIDES = re.compile(r"qos_overrides\.").match
@@ -124,7 +127,8 @@ class Join:
     """One body of code joined. files: facts by path; package_of: the package a path belongs to; built: what is built of
     it; ros: the generation where a framework does not tell; defined: knows which interfaces there are; before: as for
     Code; find_file: the workspace path of a file in a package's share folder, empty for what is not there; uncompiled:
-    the sources that were left out of the files, since nothing compiles them."""
+    the sources that were left out of the files, since nothing compiles them; constants: what the builds define;
+    documents: the files that it reads by itself."""
 
     def __init__(
         self,
@@ -137,14 +141,17 @@ class Join:
         before: FlowCode | None = None,
         find_file: Callable[[str, str], str] = lambda package, path: "",
         uncompiled: Iterable[str] = (),
+        constants: BuildConstants | None = None,
+        documents: Documents | None = None,
     ):
         self.ros, self.built, self._find_file = ros, list(built), find_file
         self._uncompiled = tuple(sorted(uncompiled))
         self.plugins = {name: cls for package in self.built for name, cls in package.plugins.items()}
         sources = (CodeFile(path, package_of(path), facts) for path, facts in sorted(files.items()))
-        self.code = FlowCode(sources, before)
+        self.code = FlowCode(sources, before, constants)
         self.calls = Calls(self.code, table or load_frameworks())
         self.values = FlowValues(self.calls)
+        self.values.documents = documents or self.values.documents
         self.sites = Sites(self.code, self.calls, self.values, defined or DefinedInterfaces())
         self.reach = CodeReach(self.sites)
         self.objects = NodeObjects(self.calls, self.values, ros)
@@ -417,6 +424,9 @@ class Join:
                 if part.fixed:
                     given, namespace = _keep_fixed(given, part.fixed, namespace, start.namespace)
                 instance = make_instance(launch, own, given, namespace)
+                if start.kind == "composable" and start.generation == 1:
+                    manager = containers.get(start.container.value or "") or _give_container(start, {})
+                    instance = instance._replace(process=make_instance(launch, "", manager))
                 node = structs.replace(
                     part.node, id=instance.name, name=instance.name, started=f"{at[0]}:{at[1]}",
                     uncertain=instance.uncertain,
@@ -727,7 +737,7 @@ class Join:
             count.calls, count.resolved, count.by_default, len(self.code.sources), tuple(sorted(unread)),
             tuple(sorted(count.unresolved, key=lambda one: (one.path, one.line, one.what))),
             tuple(Unresolved(use.row.does, f"inside `{use.fn.name}`", *_get_place(use)) for use in self.sites.wrapped),
-            self._uncompiled,
+            self._uncompiled, in_part=count.in_part,
         )  # fmt: skip
         known = [one.instance.started for one in running if one.instance is not None]
         outside = tuple(dict.fromkeys(list_outside(launch, known, self._locate))) if launch is not None else ()
@@ -750,7 +760,10 @@ class Join:
                 every = ((those[0], site), *adapted)
                 found = (self._find_missing(one) or self._find_refused(one, owner) for owner, one in every)
                 lacking = next(filter(None, found), None)
-                lost = Unresolved(*lacking, *_get_place(site.use), site.written) if lacking else None
+                lost = None
+                if lacking is not None:
+                    pattern = spell_pattern(value for _, one in every for value in one.names)
+                    lost = Unresolved(*lacking, *_get_place(site.use), site.written, pattern)
                 count.call(lost, (site,))
             for owner, here in adapted:
                 owners.use(owner)
@@ -778,7 +791,10 @@ class Join:
                 sites = [self._adapt_site(site, those[0]) if owners.launched else site for site in statement.sites]
                 reason = statement.reason or next((n.reason for s in sites for n in s.names if n.text is None), "")
                 receiver = self.calls.get_receiver(statement.use)
-                lost = Unresolved("publish", reason, *_get_place(statement.use), receiver) if reason else None
+                lost = None
+                if reason:
+                    pattern = "" if statement.reason else spell_pattern(value for one in sites for value in one.names)
+                    lost = Unresolved("publish", reason, *_get_place(statement.use), receiver, pattern)
                 count.call(lost, statement.sites)
             for owner in those:
                 owners.use(owner)
@@ -1060,8 +1076,8 @@ class Join:
         node = _get_node(owner)
         instance = owner.instance if isinstance(owner, Running) else None
         text = value.text if value.text is not None else value.shown
-        if value.text is None and not text:
-            return "", "unresolved", value.reason
+        if value.text is None and text[:1] in ("", "<"):
+            return "", "unresolved", value.reason  # what begins with something unknown may be in any namespace
         loaded = owner.loaded if isinstance(owner, Running) else None
         unknown = f"/<{(node.executable or get_tail(node.plugin)) if node else 'node'}>"
         full = loaded.name if loaded is not None else (node and node.name) or unknown
@@ -1071,6 +1087,10 @@ class Join:
             return text, value.how, ""
         one = generation == 1
         try:
+            process = self._find_process(site, owner) if one else None
+            if process is not None:
+                instance, full = process, process.name
+                namespace, _, own = full.rpartition("/")
             if one:
                 if site.prefix and text[:1] not in ("/", "~", "{"):
                     text = f"~{text}" if site.prefix == "~" else f"{site.prefix}/{text}"
@@ -1099,6 +1119,14 @@ class Join:
         if name != plain:
             return name, "launch", ""
         return name, "given" if site.implied and value.how == "literal" else value.how, ""
+
+    def _find_process(self, site: Site, owner: Owner) -> Instance | None:
+        """The node whose process a nodelet is in, where the handle of a site is that of the process; None for all
+        else."""
+        process = owner.instance.process if isinstance(owner, Running) and owner.instance is not None else None
+        if process is None or not isinstance(owner, Running):
+            return None
+        return process if self.sites.handles.is_of_process(site.use, owner.limit_values()) else None
 
     def _make_publishes(self, statement: Statement, owner: Owner) -> Iterator[Publish]:
         use = statement.use
@@ -1212,7 +1240,7 @@ class _Count:
     """Calls of the frameworks, counted."""
 
     def __init__(self, unresolved: list[Unresolved]):
-        self.calls = self.resolved = self.by_default = 0
+        self.calls = self.resolved = self.by_default = self.in_part = 0
         self.unresolved = unresolved
 
     def call(self, lost: Unresolved | None, sites: Iterable[Site]) -> None:
@@ -1220,6 +1248,7 @@ class _Count:
         self.calls += 1
         if lost is not None:
             self.unresolved.append(lost)
+            self.in_part += has_known_segment(lost.pattern)
         else:
             self.resolved += 1
             self.by_default += all(value.how == "default" for site in sites for value in site.names)

@@ -103,6 +103,16 @@ def make_open_part(shown: str) -> str:
     return found + ">" * bool(depth)
 
 
+OR = " or "
+"""What stands between the patterns of several names."""
+_SEGMENT = re.compile(r"\w+")
+
+
+def has_known_segment(pattern: str) -> bool:
+    """Whether of each name that a pattern is of a whole segment is known: of `/robot_*/scan`, not of `/robot_*`."""
+    return all(any(map(_SEGMENT.fullmatch, one.split("/"))) for one in pattern.split(OR))
+
+
 def is_open(name: str) -> bool:
     """Whether a part of a name is not known."""
     return _OPEN.search(name) is not None

@@ -18,7 +18,7 @@ class FlowValue(NamedTuple):
     may say it. beside: it is not known, and holds under some condition in place of values that are. only_if: the
     condition under which it is worth that, where it is not known whether that holds. unpassed: it is given by whoever
     calls a function, and nothing that runs does; uncalled: nothing at all does. shown: of what is not known, what is
-    known in part, with brackets for the rest."""
+    known in part, with brackets for the rest; more: it may be something else, too, of which nothing is known."""
 
     text: str | None
     how: How = "literal"
@@ -28,6 +28,7 @@ class FlowValue(NamedTuple):
     uncalled: bool = False
     unpassed: bool = False
     shown: str = ""
+    more: bool = False
 
     def mark(self) -> FlowValue:
         """The same as one that may hold in place of others."""

@@ -65,7 +65,11 @@ class InWorkspace:
     def find_parameter_file(self, package: str, path: str) -> ParameterFile | None:
         """The facts of a parameter file; None for what is not there."""
         place = self.find_workspace_path(package, path)
-        return self._get_facts(place, "flow_parameters") if place else None
+        return self.read_values(place) if place else None
+
+    def read_values(self, place: str) -> ParameterFile | None:
+        """The values of a YAML file of the workspace; None for what is not there."""
+        return self._get_facts(place, "flow_parameters")
 
     def _get_facts(self, place: str, kind: str) -> Any:
         return self.workspace.extraction.look((place,), kind).get(place)
@@ -152,7 +156,8 @@ class Instance(NamedTuple):
     """A node as a launch starts it. name: full. settings: values of its parameters; in ROS 1 of all on the parameter
     server, by their global names. uncertain: why its name, or whether it is started at all, is not sure. What is not
     known of names and values stands in brackets (`/<$ROBOT>/camera`). chosen: the settings that rest on the default of
-    a launch argument. is_unread: it is given a parameter file of which the content is not known."""
+    a launch argument. is_unread: it is given a parameter file of which the content is not known. process: of a nodelet
+    the node that it is loaded into."""
 
     started: Started
     name: str
@@ -161,6 +166,7 @@ class Instance(NamedTuple):
     uncertain: tuple[str, ...]
     chosen: frozenset[str] = frozenset()
     is_unread: bool = False
+    process: Instance | None = None
 
     def remap_name(self, name: str, ros: int, kind: str = "topic") -> str:
         """A name as the code has it, after the remappings of this start; full. It is known in part where a remapping

@@ -13,6 +13,7 @@ from ....edges.groups import group_pairs
 from ..launch.result import Launched
 from .graph import LOST_INCLUDE, NOT_GIVEN, Endpoint, Graph, Node, Publish, Unresolved
 from .launches import Launch
+from .names import has_known_segment
 
 _Row = TypeVar("_Row")
 
@@ -69,7 +70,10 @@ def merge_launches(code: Graph, launches: Sequence[Launch]) -> Graph:
     resolved = code.coverage.resolved + len(code.coverage.unresolved) - len(left)
     return msgspec.structs.replace(
         code,
-        coverage=msgspec.structs.replace(code.coverage, resolved=resolved, unresolved=(*left, *lost)),
+        coverage=msgspec.structs.replace(
+            code.coverage, resolved=resolved, unresolved=(*left, *lost),
+            in_part=sum(has_known_segment(one.pattern) for one in left),
+        ),
         nodes=tuple(sorted(nodes.values(), key=lambda node: node.id)),
         endpoints=endpoints,
         publishes=publishes,

@@ -21,13 +21,14 @@ from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail, is_number, select_overloads
 from .conditions import CASTS, ConditionReader, DecidedCondition, is_truth
-from .elements import DEFAULT, SETTING, Elements, KnownCount, ListElement, find_begun
+from .documents import SHARES, Documents
+from .elements import DEFAULT, SETTING, Elements, KnownCount, ListElement, find_begun, is_fallback
 from .given_lists import GivenLists
 from .graph import NOT_GIVEN, How
 from .literals import spell_number
 from .makers import Makers
 from .named_in_turns import DefaultGiven, NamesInTurns
-from .names import is_open, make_open_part, resolve_ros1_name
+from .names import OR, is_open, make_open_part, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
 from .printing import find_format_place
 from .reaching import LOOPS, FlowValue, ReachingValues, lessen
@@ -256,6 +257,7 @@ class FlowValues:
         self.find_prefix: Callable[[FrameworkCall, FlowValues], str] = lambda use, values: ""
         # The value of a constant of a message or a released package by its path, where it is a string.
         self.find_outside_text: Callable[[str, Fn], str | None] = lambda path, fn: None
+        self.documents = Documents()
         self._prefixes: dict[int, str] = {}
         self._asked_prefixes: set[int] = set()
         self._left = _MOST_STEPS
@@ -347,7 +349,7 @@ class FlowValues:
         other._known, other._works, other._asking = self._known, self._works, self._asking
         other.find_prefix, other._prefixes = self.find_prefix, self._prefixes
         other._asked_prefixes = self._asked_prefixes
-        other.find_outside_text = self.find_outside_text
+        other.find_outside_text, other.documents = self.find_outside_text, self.documents
         return other
 
     def evaluate(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
@@ -359,8 +361,18 @@ class FlowValues:
         beside = [one for one in found if one.beside][:1]
         if known and beside:
             return [*(one._replace(how="partly") for one in known), *beside]
-        in_part = list({one.shown: one for one in found if one.shown}.values())
-        return known or in_part[:_MOST_IN_PART] or found[:1] or [FlowValue(None, "unresolved", "no value is given")]
+        if known:
+            return known
+        # What begins with something unknown is no name, whatever follows.
+        in_part = list({one.shown: one for one in found if one.shown[:1] not in ("", "<")}.values())
+        if in_part:
+            is_more = len(in_part) > _MOST_IN_PART or any(one.shown[:1] in ("", "<") for one in found)
+            return [one._replace(more=True) for one in in_part[:_MOST_IN_PART]] if is_more else in_part
+        if len(found) > 1 and found[0].shown:
+            shown = list(dict.fromkeys(one.shown for one in found))
+            is_more = "" in shown or len(shown) > _MOST_IN_PART
+            return [found[0]._replace(shown="" if is_more else OR.join(shown))]
+        return found[:1] or [FlowValue(None, "unresolved", "no value is given")]
 
     def find_only_text(self, value: FlowExpr, fn: Fn) -> str | None:
         """The first text that an expression may be worth, None where something unknown may be in its place."""
@@ -402,7 +414,7 @@ class FlowValues:
             yield from self._evaluate_name(value.text, fn, line, seen)
         elif kind == "join":
             yield from self._evaluate_join(value, fn, line, seen)
-        elif kind == "choice" and len(value.parts) == 3 and _is_fallback(value):
+        elif kind == "choice" and len(value.parts) == 3 and is_fallback(value):
             yield from self._evaluate_fallback(value, fn, line, seen)
         elif kind == "choice" and len(value.parts) == 3:
             yield from self._evaluate_choice(value, fn, line, seen)
@@ -605,8 +617,19 @@ class FlowValues:
     @cached_property
     def elements(self) -> Elements:
         """What lists and dictionaries of the code hold."""
-        asked = (self.runs, self.find_only_call, self.find_makers, GivenLists(self).find, self.find_turn)
+        asked = (self.runs, self.find_only_call, self.find_makers, self._find_given_list, self.find_turn)
         return Elements(self.code, *asked, self._count)
+
+    @cached_property
+    def _given_lists(self) -> GivenLists:
+        return GivenLists(self)
+
+    def _find_given_list(self, value: FlowExpr, fn: Fn, line: int) -> list[ListElement] | None:
+        """What a launch, or a file that the code reads, makes of an expression; None for all else."""
+        document = self.documents.find(value, fn, line, self) if value.kind == "call" else None
+        if document is not None and document.kind == "list":
+            return [ListElement(part, fn, line) for part in document.parts]
+        return self._given_lists.find(value, fn, line)
 
     def _count(self, value: FlowExpr, fn: Fn, line: int) -> KnownCount | None:
         """The only number that a limit of a loop may be."""
@@ -852,6 +875,7 @@ class FlowValues:
         for name in _SHARED:
             other.__dict__[name] = getattr(self, name)
         other.find_prefix, other.find_outside_text = self.find_prefix, self.find_outside_text
+        other.documents = self.documents
         return other
 
     @cached_property
@@ -1411,14 +1435,19 @@ class FlowValues:
     def _evaluate_constant(self, variable: Variable, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
         name = variable.name
         found = self.code.list_constants(variable, fn)
+        built = self.code.list_built_constants(name, fn)
         # The preprocessor, or the program that is built, chooses one of several.
-        several = len({constant.value for constant, _ in found if constant.value is not None}) > 1
-        condition = f"`{name}` is defined so" if several else ""
+        every = {constant.value for constant, _ in found if constant.value is not None}.union(one for one, _ in built)
+        condition = f"`{name}` is defined so" if len(every) > 1 or any(depends for _, depends in built) else ""
+        for value, _ in built:
+            yield from put_under_more(self._evaluate(value, fn, 0, seen), condition)
+        if built and not condition:
+            return
         for constant, source in found:
             if constant.value is not None:
                 holder = self.code.find_first(source, fn)
                 yield from put_under_more(self._evaluate(constant.value, holder, constant.line, seen), condition)
-        if found:
+        if found or built:
             return
         if "::" in name or "." in name:
             cls, _, member = name.replace(".", "::").rpartition("::")
@@ -1545,7 +1574,7 @@ class FlowValues:
                 yield from self._evaluate_name(head, fn, line, seen)
             return
         if head and last in ("get", "at") and value.parts and (python or value.receiver is None):
-            chosen = self.elements.select(FlowExpr("name", head), value.parts[0], fn, line)
+            chosen = self.elements.select(value.receiver or FlowExpr("name", head), value.parts[0], fn, line)
             if chosen:
                 for one in chosen:
                     yield from self._evaluate_listed(one, (*seen, ("element", one.value)))
@@ -1595,6 +1624,10 @@ class FlowValues:
             return
         if (last in _OF_FIRST or (last.startswith("create") and "Options::" in value.text)) and value.parts:
             yield from self._evaluate(value.parts[0], fn, line, seen)
+            return
+        if last in SHARES and len(value.parts) == 1:
+            for one in self._evaluate(value.parts[0], fn, line, seen):
+                yield one if one.text is None else one._replace(text=f"$(find {one.text})")
             return
         if last == "getCameraInfoTopic" and len(value.parts) == 1:
             for one in self._evaluate(value.parts[0], fn, line, seen):
@@ -1997,17 +2030,41 @@ def _join_in_part(row: tuple[FlowValue, ...], value: FlowExpr) -> FlowValue:
         one.text if one.text is not None else one.shown or make_open_part(f"<{_label(part)}>") for one, part in parts
     )
     known = _WORD_OR_NUMBER.search(_BRACKETS.sub("", shown)) and len(shown) < _LONGEST_IN_PART and "{" not in shown
-    # What begins with something unknown may be in any namespace.
-    return joined._replace(shown=shown if known and shown[0] != "<" else "")
+    return joined._replace(shown=shown if known else "")
+
+
+def spell_pattern(values: Iterable[FlowValue]) -> str:
+    """What names that are not known match, `*` being any text; empty where of one of them nothing is known."""
+    found: dict[str, None] = {}
+    for one in values:
+        if one.text is None:
+            patterns = _BRACKETS.sub("*", one.shown).split(OR)
+            if one.more or not patterns[0]:
+                return ""
+            found.update((f"/{each}" if each[0] == "*" else each, None) for each in patterns)
+    return OR.join(found)
 
 
 def _label(value: FlowExpr) -> str:
     """A short name for what is not known."""
+    variable = _find_variable(value)
+    if variable:
+        return f"${variable}"
     while value.kind in ("call", "make", "keyword") and len(value.parts) == 1:
         value = value.parts[0]
     if value.kind == "index" and value.parts:
         return _label(value.parts[0])
     return get_tail(value.text.replace("[]", "").rstrip("().")) or "..."
+
+
+def _find_variable(value: FlowExpr) -> str:
+    """The variable of the environment that an expression asks for, empty for none."""
+    asked = None
+    if value.kind == "index" and len(value.parts) == 2 and value.parts[0].text.endswith("environ"):
+        asked = value.parts[1]
+    elif value.kind == "call" and value.parts and value.text.endswith(("environ.get", "getenv")):
+        asked = value.parts[0]
+    return asked.text if asked is not None and asked.kind == "text" else ""
 
 
 def _join_texts(*texts: str) -> str:
@@ -2214,15 +2271,6 @@ def _find_guard_before(fn: Fn, line: int) -> int:
     """The place of the innermost guard around a line that begins before the line, -1 for none."""
     around = fn.list_guards_around(_find_guard(fn, line))
     return next((place for place in around if fn.facts.guards[place].line < line), -1)
-
-
-def _is_fallback(value: FlowExpr) -> bool:
-    """Whether a choice is one between what is asked and something else: `a or b`, `a if a else b`."""
-    asked, first = value.parts[0].text, value.parts[1]
-    written = f"self.{first.text[5:]}" if first.text.startswith("this.") else first.text
-    return (first.kind == "name" and asked == written) or (
-        first.kind == "call" and asked.startswith(f"{written}(") and asked.endswith(")")
-    )
 
 
 def spell_condition(kind: str, text: str) -> str:

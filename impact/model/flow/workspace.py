@@ -15,8 +15,10 @@ from ...facts.store import Store, recall
 from ...tree.paths import Tree
 from ..package import Watched
 from ..workspace import Package, Workspace, link
+from .build_constants import BuildConstants, GivenMacros
 from .callers import Callers, build_callers
 from .defined import DefinedInterfaces
+from .documents import Documents
 from .file_selection import BUILD, compute_code_key, is_code, list_run_by_hand, make_code_selector
 from .graph import COPIED, Graph, Unresolved
 from .join import Join
@@ -215,13 +217,23 @@ def join_code(workspace: Workspace) -> Join:
     from .started import InWorkspace  # needs all that follows launch files
 
     defined = DefinedInterfaces(workspace.interface_names, workspace.ros, workspace.interface_texts)
-    find_file = InWorkspace(workspace).find_workspace_path
+    sources = InWorkspace(workspace)
+    find_file = sources.find_workspace_path
     built = list_built(workspace, files)
     uncompiled = find_uncompiled(workspace, files)
     return Join(
         {path: file for path, file in files.items() if path not in uncompiled}, packages.__getitem__, built,
         workspace.ros, defined=defined, find_file=find_file, uncompiled=uncompiled,
+        constants=BuildConstants(_list_macros(workspace)), documents=Documents(find_file, sources.read_values),
     )  # fmt: skip
+
+
+def _list_macros(workspace: Workspace) -> Iterator[GivenMacros]:
+    """What the build of each package gives to its compiler."""
+    for package in workspace:
+        if package.build.macros:
+            compiled = {target.name: target.sources for target in package.build.targets}
+            yield GivenMacros(package.name, package.build.macros, compiled)
 
 
 def make_graph(

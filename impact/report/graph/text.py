@@ -243,6 +243,7 @@ def render_coverage(
     """How much was resolved, and what was not. near: of that, what may be listed; everything: all of it, not the first
     20 alone."""
     share = f", {coverage.by_default:,} by a parameter's default" if coverage.by_default else ""
+    share += f", {coverage.in_part:,} more known in part" if coverage.in_part else ""
     yield from lay_out(
         [LinePart(f"{coverage.resolved:,} of {format_count(coverage.calls, 'API call')} resolved{share}; "
                f"{format_count(coverage.files, 'file')} read")], style, 0, 2,
@@ -271,6 +272,7 @@ def render_coverage(
     shown = near if everything else near[:_SHOWN]
     for one in shown:
         written = f" `{one.written}`" if one.written else ""
+        written += f", known as `{one.pattern}`" if one.pattern else ""
         pieces = [LinePart("", path=f"{one.path}:{one.line}:"), LinePart(f"{one.what}{written}: {one.reason}")]
         yield from lay_out(pieces, style, 2, 4)
     more = len(coverage.unresolved) - len(shown)

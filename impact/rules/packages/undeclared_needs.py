@@ -61,7 +61,7 @@ def find_undeclared(view: TargetView, package: Package) -> Undeclared:
     for need in view.list_needs(package):
         if view.is_met(need.providers, declared) or (need.subject.startswith(TEST_HEADERS) and need.role == "test"):
             continue
-        name = choose_name(view, need)
+        name = choose_name(view, package, need)
         if name is None or name == package.name or name in elsewhere:
             continue
         if need.how == "include" and any(view.may_have_released_header(one, need.subject) for one in declared):
@@ -100,7 +100,7 @@ def list_sources(view: TargetView, package: Package, need: Need) -> tuple[str, .
     return tuple(one for one in declared if view.is_met(need.providers, view.list_transitive([one])))
 
 
-def choose_name(view: TargetView, need: Need) -> str | None:
+def choose_name(view: TargetView, package: Package, need: Need) -> str | None:
     """The name a person would put into the manifest for a need: the first provider that can be had on the target, or
     the package that is named by its form, wherever it comes from. Of those that bring a module, what is called as the
     first is, for some version of it or of Python: the others are packages that use it."""
@@ -117,8 +117,9 @@ def choose_name(view: TargetView, need: Need) -> str | None:
         return None
     if first.name != re.split(r"[./]", need.subject)[0]:
         return None
-    # A launch file in Python is of ROS 2, whoever has ported what it starts.
-    ported = need.how == "launch" and need.at.path.endswith(".py") and view.target.ros == 2
+    # A launch file in Python is of ROS 2, whoever has ported what it starts, and so is the form of some headers.
+    launched = need.how == "launch" and need.at.path.endswith(".py")
+    ported = view.target.ros == 2 and (launched or view.includes_interfaces_of(package, first.name))
     ported = ported and not view.find_reviewed("package", first.name)
     return first.name if ported or not view.target.is_other_generation(first.name) else None
 

@@ -170,7 +170,7 @@ function summary() {
   return [make("h2", null, graph.root && graph.root !== "." ? graph.root : "Message flow"),
     make("p", { class: "soft" }, "Click a node, a topic or an arrow to see where it is written. Drag to move, turn the wheel to zoom; tab and the arrow keys walk along the graph, shift and the arrow keys move it, enter opens, f folds and unfolds, escape closes."),
     make("h3", null, "Coverage"),
-    make("p", null, `${number(coverage.resolved)} of ${counted(coverage.calls, "API call")} resolved${share}${coverage.by_default ? `, ${number(coverage.by_default)} by a parameter's default` : ""}; ${counted(coverage.files, "file")} read.`),
+    make("p", null, `${number(coverage.resolved)} of ${counted(coverage.calls, "API call")} resolved${share}${coverage.by_default ? `, ${number(coverage.by_default)} by a parameter's default` : ""}${coverage.in_part ? `, ${number(coverage.in_part)} more known in part` : ""}; ${counted(coverage.files, "file")} read.`),
     ...(graph.base === null ? [] : changes.length ? section(`Changes since ${graph.base}`, changes, (edge) => make("li", null, marked(edge.mark, edge.why), " ",
       edge.nodeBox ? button(`${edge.nodeBox.label} ${verb(edge.role)} ${edge.nameBox.label}`, () => { choose(edge); revealChosen(); }, { class: "go" }) : link(edge.nameBox),
       place(edge.at[0]?.path, edge.at[0]?.line, edge.mark === "removed"))) : [make("h3", null, "Changes"), make("p", null, `None since ${graph.base}.`)]),
