@@ -241,9 +241,15 @@ class Sites:
     def _is_called_as_framework(self, fn: Fn) -> bool:
         """Whether callers of a function of such a name, if there are any, look like callers of the framework. Those of
         a method of an object that is no node do not, so that it is followed as any other function."""
-        named = self.code.list_calls_named((get_tail(fn.name),))
-        callers = [(one, call) for one, call in named if fn in self.code.list_targets(call.callee, one)]
-        return not callers or any(self.calls.find_use(one, call) is not None for one, call in callers)
+        if "node" in self.calls.find_own_kinds(fn):
+            return True
+        is_called = False
+        for one, call in self.code.list_calls_named((get_tail(fn.name),)):
+            if fn in self.code.list_targets(call.callee, one):
+                is_called = True
+                if self.calls.find_use(one, call) is not None:
+                    return True
+        return not is_called
 
     def _expand_rows(self, use: FrameworkCall) -> Iterator[FrameworkCall]:
         """The use for each row of the list that its arguments walk through together, with what the row has for them:
