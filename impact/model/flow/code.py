@@ -1435,13 +1435,8 @@ def _list_makes(value: FlowExpr, depth: int = 0) -> list[FlowExpr]:
 
 
 def find_parameter(fn: Fn, name: str) -> tuple[int, FlowParameter] | None:
-    """The place and facts of a parameter; `self` is not counted."""
-    rows = fn.facts.parameters
-    offset = 1 if rows and rows[0].name in ("self", "cls") and fn.source.facts.language == "python" else 0
-    for place, parameter in enumerate(rows):
-        if parameter.name == name:
-            return place - offset, parameter
-    return None
+    """The place and facts of a parameter. The object of a method is none; that of a function which calls it `self` is."""
+    return next(((place, one) for place, one in enumerate(fn.facts.parameters) if one.name == name), None)
 
 
 def _split_first(name: str) -> tuple[str, str, str]:

@@ -46,6 +46,12 @@ _EMPTY = "the name is empty"
 _CONNECTS = ("connectInput", "reset")
 _PUTS = frozenset(("push_back", "emplace_back", "emplace", "insert", "append", "make_pair", "reset"))
 _ROLES: dict[str, Role] = {role: role for role in get_args(Role)}
+_MODULES = (".msg", ".srv", ".action")
+_MODULES_OF: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(("publisher", "subscriber"), (".msg",)), **dict.fromkeys(("server", "client"), (".srv",))
+}  # fmt: skip
+"""Of which modules the interfaces are that an endpoint may have: services alone are no messages. Those of actions are
+messages in ROS 1."""
 
 
 class TemplateType(NamedTuple):
@@ -506,7 +512,7 @@ class Sites:
                 if value is not None and value.kind in ("name", "call"):
                     text = value.text
                     if fn.source.facts.language == "python":
-                        text = self._find_python_type(value, fn, values)
+                        text = self._find_python_type(value, fn, values, row.does)
                         if text == "*" or "/" in text:
                             return text
             if text:
@@ -603,12 +609,12 @@ class Sites:
         """Whether a name of Python is neither a variable nor made in the file."""
         return self.code.identify(name, fn).kind == "global" and not self.code.list_writes(self.code.identify(name, fn))
 
-    def _find_python_type(self, value: FlowExpr, fn: Fn, values: FlowValues) -> str:
+    def _find_python_type(self, value: FlowExpr, fn: Fn, values: FlowValues, role: str) -> str:
         meant = self.code.resolve_name(value.text, fn.source)
         if find_interface(meant):
             return meant
         if value.kind == "name" and ("." in value.text or self._is_free(value.text, fn)):
-            imported = self._find_imported_type(value.text, fn.source)
+            imported = self._find_imported_type(value.text, fn.source, _MODULES_OF.get(role, _MODULES))
             if imported is not None:
                 return imported
         for one in values.evaluate(value, fn):
@@ -626,21 +632,24 @@ class Sites:
                     return found
         return meant
 
-    def _find_imported_type(self, name: str, source: CodeFile, depth: int = 0) -> str | None:
+    def _find_imported_type(
+        self, name: str, source: CodeFile, modules: tuple[str, ...] = _MODULES, depth: int = 0
+    ) -> str | None:
         """The interface that a name of Python means in a file by what that imports, itself or through other modules of
-        the code; empty where several may have it, None where none is known to."""
+        the code; empty where several may have it, None where none is known to. modules: those of packages that have
+        interfaces of the kind that is wanted."""
         meant = self.code.resolve_name(name, source)
         known = find_interface(meant)
         if known or depth > 4:
             return known or None
         # Of two modules that have it, the one that is imported last.
         stars = [alias.target for alias in self.code.aliases[source.path].get("*", ())] if "." not in name else []
-        found = [find_interface(f"{star}.{name}") for star in stars if star.endswith((".msg", ".srv", ".action"))]
+        found = [find_interface(f"{star}.{name}") for star in stars if star.endswith(modules)]
         if found:
             return self._select_last_existing(found)
         for target in (meant, *(join_dotted(star, name) for star in reversed(stars))):
             place = self.code.modules.find_beginning(target, source)
-            imported = self._find_imported_type(place[1], place[0], depth + 1) if place is not None else None
+            imported = self._find_imported_type(place[1], place[0], modules, depth + 1) if place is not None else None
             if imported is not None:
                 return imported
         return None

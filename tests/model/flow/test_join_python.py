@@ -89,6 +89,38 @@ def test_types_of_modules_that_are_imported_whole(first, last, name, expected):
     assert ends(found, "publisher") == {("p/talker.py", "/out", expected)}
 
 
+def test_types_of_modules_that_are_imported_whole_by_their_kind():
+    """Services are in modules of services: what a message module may have is none."""
+    found = graph({"p/asks.py": """
+        import rospy
+        from mavros_msgs.srv import *
+        from unknown_msgs.msg import *
+        rospy.init_node("asks")
+        rospy.ServiceProxy("/mode", SetMode)
+        rospy.Subscriber("/mode", SetMode, print)
+    """}, 1, defined=DefinedInterfaces({"mavros_msgs": {"SetMode"}}, 1))  # fmt: skip
+    assert ends(found, "client") == {("p/asks.py", "/mode", "mavros_msgs/SetMode")}
+    assert ends(found, "subscriber") == {("p/asks.py", "/mode", "unknown_msgs/SetMode")}
+
+
+def test_function_that_is_given_the_object_as_self():
+    found = graph({"p/talker.py": """
+        import rospy
+        from std_msgs.msg import Bool
+
+        def advertise(self, topic, size=1):
+            return rospy.Publisher(topic, Bool, queue_size=size)
+
+        class Talker:
+            def __init__(self):
+                self.out = advertise(self, "lit", 3)
+
+        rospy.init_node("talker")
+        Talker()
+    """}, 1)  # fmt: skip
+    assert ends(found, "publisher") == {("p/talker.py", "/lit", "std_msgs/Bool")}
+
+
 @pytest.mark.parametrize(
     "first, last, expected",
     [("std_msgs", "geometry_msgs", "geometry_msgs/Pose"), ("other_msgs", "unknown_msgs", "")],
