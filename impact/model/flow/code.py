@@ -1435,7 +1435,7 @@ def _list_makes(value: FlowExpr, depth: int = 0) -> list[FlowExpr]:
 
 
 def find_parameter(fn: Fn, name: str) -> tuple[int, FlowParameter] | None:
-    """The place and facts of a parameter. The object of a method is none; that of a function which calls it `self` is."""
+    """The place and facts of a parameter. The object of a method is none, a function's own `self` is."""
     return next(((place, one) for place, one in enumerate(fn.facts.parameters) if one.name == name), None)
 
 
