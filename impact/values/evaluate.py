@@ -11,7 +11,7 @@ import z3
 from .answers import CallbackExample, FieldSets, SentThrough, SentValues
 from .narrowing import ParameterValues, list_sent_ways, narrow_to_parameters
 from .outcomes import CallbackPath, CodeLine, CrashKind, Exploration, InputKind, Reaction, Sent
-from .projection import make_witness, project_fields
+from .projection import FieldValues, make_witness, project_fields
 from .sent_values import project_sent
 
 _MOST_EXAMPLES = 24
@@ -50,7 +50,8 @@ def evaluate(
     assumed = tuple(sorted({name for path in exploration.paths for name in path.assumed}))
     beyond = tuple(dict.fromkeys(_name_array(name) for name in _list_exceeded(exploration)))
     fields = tuple(_list_fields(exploration, names, seconds, is_whole=not beyond))
-    sent = tuple(list_sent(narrow_to_parameters(exploration, parameters), seconds))
+    narrowed = narrow_to_parameters(exploration, parameters)
+    sent = tuple(list_sent(narrowed, seconds, fields if narrowed is exploration else ()))
     return Evaluated(
         counts,
         fields,
@@ -137,8 +138,9 @@ def _list_examples(exploration: Exploration) -> list[CallbackExample]:
     return sorted(found.values(), key=lambda one: (one.result is not Reaction.CRASH, one.place))
 
 
-def list_sent(exploration: Exploration, seconds: float) -> list[SentThrough]:
-    """Per publisher and statement, the values of each field over all ways that publish through it."""
+def list_sent(exploration: Exploration, seconds: float, received: Sequence[FieldSets] = ()) -> list[SentThrough]:
+    """Per publisher and statement, the values of each field over all ways that publish through it. received: the
+    value sets of the callback's own message, as far as they are known."""
     ways: dict[tuple[str, CodeLine], list[tuple[CallbackPath, Sent]]] = {}
     for path in exploration.paths:
         for one in path.sent:
@@ -150,15 +152,37 @@ def list_sent(exploration: Exploration, seconds: float) -> list[SentThrough]:
         for _, one in rows:
             kinds.update(one.kinds)
         fields: list[SentValues] = []
+        passed = _list_passed_on(exploration, rows, received)
         for path in _list_leaves(kinds)[:_MOST_SENT_FIELDS]:
             kind = kinds.get(path) or (InputKind.CHARACTER, 8, False)
-            values = project_sent(exploration, rows, path, kind, seconds / 10)
+            values = passed.get(path) or project_sent(exploration, rows, path, kind, seconds / 10)
             if values is not None:
                 name = path if path in kinds else f"{path}.size"
                 everywhere = all(name in one.values for _, one in rows)
                 fields.append(SentValues(path, *kind, values, is_whole and everywhere))
         exact, is_listed = list_sent_ways(exploration, rows)
         found.append(SentThrough(publisher, (place,), tuple(fields), exact, is_listed))
+    return found
+
+
+def _list_passed_on(
+    exploration: Exploration, rows: Sequence[tuple[CallbackPath, Sent]], received: Sequence[FieldSets]
+) -> dict[str, FieldValues]:
+    """The values of what is sent as it was received, where all ways of one outcome send it and no others do: what the
+    field may be on these is known already."""
+    results = {path.result for path, _ in rows}
+    sending = {id(path) for path, _ in rows}
+    if len(results) != 1 or sending != {id(path) for path in exploration.paths if path.result in results}:
+        return {}
+    result = results.pop()
+    known = {f"msg.{one.path}": one.sets[result] for one in received if result in one.sets}
+    found: dict[str, FieldValues] = {}
+    for name, kind in rows[0][1].kinds.items():
+        terms = {str(one.values.get(name)) for _, one in rows}
+        term = terms.pop() if len(terms) == 1 else ""
+        one = exploration.inputs.get(term)
+        if term in known and one is not None and (one.kind, one.bits, one.is_signed) == kind:
+            found[name] = known[term]
     return found
 
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 from ir_programs import FOLDER, compile_program, explore_entry, needs_clang
+from rosimpact.impact.values import evaluate as evaluating
 from rosimpact.impact.values import sent_values
 from rosimpact.impact.values.evaluate import evaluate
 from rosimpact.impact.values.outcomes import InputKind
@@ -52,3 +53,16 @@ def test_ends_are_found_where_the_solver_names_small_steps(entry, published, mon
 def test_bounds_are_called_as_a_reader_knows_them(published):
     explored = replace(explore_entry(published, "constants"), exceeded=frozenset({"~foreign[0]", "msg.data.size"}))
     assert evaluate(explored, {}, 600).beyond == ("data", "arrays and texts of other code")
+
+
+@needs_clang
+def test_what_is_passed_on_is_what_is_handled(published, monkeypatch):
+    """It is not looked for a second time; what only some ways pass on as it is, is looked for."""
+    asked = []
+    project = evaluating.project_sent
+    monkeypatch.setattr(evaluating, "project_sent", lambda *given: asked.append(given[2]) or project(*given))
+    (through,) = evaluate(explore_entry(published, "passed"), {}, 600).sent
+    assert ([format_values(one.values) for one in through.fields], asked) == (["10..20"], [])
+    (through,) = evaluate(explore_entry(published, "passed_in_part"), {}, 600).sent
+    assert [format_values(one.values).removesuffix(" (relational)") for one in through.fields] == ["15..20"]
+    assert asked == ["data"]

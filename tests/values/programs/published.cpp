@@ -27,3 +27,15 @@ void run_converted(Publisher &pub, const Joy &msg) {
   pub.publish(static_cast<double>(msg.small) / 4.0);
 }
 EXPLORE(converted, Joy, FIELD(small))  // also: handled
+
+void run_passed(Publisher &pub, const Joy &msg) {
+  if (msg.number < 10 || msg.number > 20) return;
+  pub.publish(msg.number);
+}
+EXPLORE(passed, Joy, FIELD(number))  // also: handled, ignored
+
+void run_passed_in_part(Publisher &pub, const Joy &msg) {
+  if (msg.number < 10 || msg.number > 20) return;
+  pub.publish(msg.number > 15 ? msg.number : 15);
+}
+EXPLORE(passed_in_part, Joy, FIELD(number))  // also: handled, ignored
