@@ -23,11 +23,12 @@ Severity
     1, other imports and launch files, settings, the tool of the build type, installed headers that nothing here
     compiles, or where a dependency is known nowhere and may bring it (a package named like an interface package may
     provide interfaces), and names that nobody is known to have, that CMake cannot go without and that are called as
-    packages of ROS are (`finger_tricks`) or given to `ament_target_dependencies()`; error for those whose interfaces are included or imported. note: conditional
-    code, examples (installed ones too, in what they import and start), documentation, files that nothing compiles, or
-    is known to install, and all but the first of more than five imports (in ROS 1 and in tests, of several), or
-    packages that launch files start, which a package does not declare, and further packages that lack the same; for
-    distros that have ended, whose machines were set up while they were maintained, all that is no error.
+    packages of ROS are (`finger_tricks`) or given to `ament_target_dependencies()`; error for those whose interfaces
+    are included or imported. note: conditional code, examples (installed ones too, in what they import and start),
+    documentation, files that nothing compiles, or is known to install, and all but the first of more than five imports
+    (in ROS 1 and in tests, of several), or packages that launch files start, which a package does not declare, and
+    further packages that lack the same; for distros that have ended, whose machines were set up while they were
+    maintained, all that is no error.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
