@@ -11,7 +11,7 @@ setup(
     | {
         "rosimpact.impact.cli": ["templates/*"],
         "rosimpact.impact.targets": ["data/*"],
-        "rosimpact.impact.rules": ["precision.json"],
+        "rosimpact.impact.rules": ["precision.json", "imprecise.toml"],
         "rosimpact.impact.report": ["*.css", "*.html", "*.js", "*.json"],
         "rosimpact.impact.measure.nodes": ["node.cpp", "CMakeLists.txt"],
         "rosimpact.impact.values.harness": ["runtime/*", "runtime/**/*"],

@@ -15,8 +15,8 @@ usage: verdicts.py draw --batch NAME --clones FOLDER --out FILE [--number 100] [
 and warnings, of a repository and rule at most two. A repository that is a subject of the batch's breaks is a head like
 any other. --preview: preview rules are asked too, so that one that became a preview by its verdicts can be
 judged again. `recheck`: checks what the verdicts are about again; exits with 1 if a finding that was judged false is
-back, and names the true ones that are gone. `precision`: writes the table that `rosimpact explain` reads, and
-names the rules that are surely right less often than 9 times in 10.
+back, and names the true ones that are gone. `precision`: writes the table that `rosimpact explain` reads, and beside it
+imprecise.toml, the rules that are surely right less often than 9 times in 10: they are previews.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ import json
 import random
 import sys
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
@@ -160,6 +160,12 @@ def find_imprecise(records: Iterable[dict]) -> dict[str, tuple[int, int]]:
     return found
 
 
+def format_imprecise(found: Mapping[str, tuple[int, int]]) -> str:
+    """What find_imprecise() found as the rules read it: they are previews by it."""
+    head = "# Previews: of how many judged findings how many were true. `benchmarks/verdicts.py precision` writes it.\n"
+    return head + "".join(f"{rule} = [{right}, {of}]\n" for rule, (right, of) in sorted(found.items()))
+
+
 def _list_jobs(clones: Sequence[mining.Clone], records: Iterable[dict]) -> list[tuple[tuple, list[dict]]]:
     """The trees that verdicts are about with their records, as far as their clones are here."""
     by_name = {clone.name.lower(): clone for clone in clones}
@@ -230,7 +236,9 @@ def main(given: list[str] | None = None) -> int:
     else:
         counted = count_precision(judged(first_sight.BATCHES))
         args.file.write_text(json.dumps(counted, indent=1) + "\n", encoding="utf-8")
-        for rule, (right, of) in sorted(find_imprecise(judged(first_sight.BATCHES)).items()):
+        found = find_imprecise(judged(first_sight.BATCHES))
+        args.file.with_name("imprecise.toml").write_text(format_imprecise(found), encoding="utf-8")
+        for rule, (right, of) in sorted(found.items()):
             print(f"{rule}: {right} of its newest {of} findings on heads were true")
     return 0
 

@@ -41,6 +41,7 @@ def ws(tmp_path_factory) -> Path:
         (package / "package.xml").write_text(MANIFEST.format(package.name))
         (package / "CMakeLists.txt").write_text(
             f"project({package.name})\nfind_package(rclcpp)\nadd_executable(a src/f0.cpp)\n"
+            "target_link_libraries(b rclcpp)\n"
         )
         for place in range(8):
             lines = "".join(f"int f{number}_{place}_{k}() {{ return {k}; }}\n" for k in range(150))
@@ -247,7 +248,7 @@ def test_closed_streams(ws, cache, closed):
     )
     assert run.returncode == (2 if 1 in closed else 1)
     assert "Traceback" not in run.stderr and "fault of rosimpact" not in run.stderr
-    assert 1 in closed or "ungiven-package" in run.stdout
+    assert 1 in closed or "nonexistent-target" in run.stdout
 
 
 # (error, what is said of it)

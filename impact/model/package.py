@@ -1867,7 +1867,7 @@ class PackageJoin:
         if inside in ("setup.py", "conanfile.py"):
             return "build"
         role = self.find_role(path)
-        if role == "test" and not self.is_run_as_test(path):
+        if role == "test" and (self._is_test_of_other_project(path) or not self.is_run_as_test(path)):
             return "aside"
         if role is None and is_vendored(inside) and self._is_left_out(path):
             return "aside"
@@ -1883,6 +1883,25 @@ class PackageJoin:
             return False
         items = (posixpath.normpath(item) if item else "" for rule in self.build.installs for item in rule.items)
         return not any(not item or f"{path}/".startswith(f"{item}/") for item in items)
+
+    def _is_test_of_other_project(self, path: str) -> bool:
+        """Whether a test in Python is of a project of Python in a folder of a package that CMake builds, and came with
+        somebody else's code: CMake runs no setup.py, and neither starts, tests with nor installs the file."""
+        if not self.build.files or self.build_type == "ament_python" or path in self.started or self._is_tested(path):
+            return False
+        if posixpath.basename(path) in self.interpreted or "setup.py" in self.interpreted or self.build.unresolved:
+            return False
+        folder = posixpath.dirname(path)
+        while folder.startswith(f"{self.path}/" if self.path else "") and folder not in ("", self.path):
+            if folder in self._projects:
+                return not self.is_installed(path)
+            folder = posixpath.dirname(folder)
+        return False
+
+    @cached_property
+    def _projects(self) -> frozenset[str]:
+        """The folders with what makes a project of Python."""
+        return frozenset(posixpath.dirname(path) for path in self.files if posixpath.basename(path) in _PROJECT_FILES)
 
     def _is_left_by_setup(self, path: str) -> bool:
         """Whether a setup.py of which all is known that it installs leaves a Python file out: it is in no package or
@@ -1920,7 +1939,11 @@ class PackageJoin:
         folder, name = posixpath.split(path)
         if name in self.interpreted or f"{folder}/__init__.py" in self.files:
             return True
-        run = [source for target in build.targets if target.kind == "test" for source in target.sources]
+        return self._is_tested(path)
+
+    def _is_tested(self, path: str) -> bool:
+        """Whether a file lies in a folder of a test of CMake."""
+        run = [source for target in self.build.targets if target.kind == "test" for source in target.sources]
         folders = [one if "." not in posixpath.basename(one) else posixpath.dirname(one) for one in run]
         return any("$" in folder or path.startswith(f"{folder}/") for folder in folders)
 
@@ -1974,6 +1997,8 @@ class PackageJoin:
 
 # Arguments of setup() that say what is installed, as unresolved clauses begin.
 _INSTALLING = ("packages", "package_dir", "py_modules", "data_files", "scripts", "arguments", "written")
+# What makes a folder a project of Python.
+_PROJECT_FILES = frozenset(("setup.py", "pyproject.toml"))
 # Commands that may run tests, besides those that the interpreter knows and those of linters.
 _MAY_TEST = re.compile(r"\A(?!ament_|catkin_add|roslaunch_add|add_(?:launch|ros)).*test")
 _BUILT = re.compile(r"\$\{(?:\w*BINARY_DIR|CATKIN_DEVEL_PREFIX)\}")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import msgspec
 
-from .rule import Rule, group_rules
+from .rule import Rule, group_rules, read_imprecise
 
 PRECISION = Path(__file__).with_name("precision.json")
 
@@ -71,6 +71,9 @@ def explain(name: str, rules: Mapping[str, Rule]) -> str:
     if name in rules:
         own = read_precision().get(name, [])
         documentation = f"{rules[name].documentation.rstrip()}\n\n{describe_precision(own)}"
+        if name in read_imprecise():
+            right, of = read_imprecise()[name]
+            documentation += f"\n    A preview: of its newest findings on heads, {right} of {of} were true."
         return f"{documentation}\n\nThe name also stands for\n{listed}" if others else documentation
     if others:
         return f"{name}: a group of rules.\n\nThe name stands for\n{listed}"

@@ -42,13 +42,23 @@ import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
+from pathlib import Path
 from typing import Any, Literal, NamedTuple
+
+import msgspec
 
 from ..targets.evidence_record import Evidence
 from ..targets.symbol import Horizon
 from .fix_actions import FixAction
 from .severity import SEVERITIES, Doubt, Together, limit_severity
 from .text import Text, Value
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib  # pyright: ignore[reportMissingImports]
+
+IMPRECISE = Path(__file__).with_name("imprecise.toml")
 
 Scope = Literal["package", "target", "workspace", "change", "flow", "flow_change", "install_space", "targets"]
 
@@ -264,8 +274,9 @@ def rule(
         run, called = (_run_on_packages(function), "target") if scope == "package" else (function, scope)
         documentation = _tell_severity(module.__doc__ or "", usual)
         by_kind = {"": texts} if isinstance(texts, Text) else texts
+        held_back = preview or name in read_imprecise()
         _RULES[name] = Rule(
-            name, parts[-2], usual, run, documentation, called, preview, doubts, group, by_kind, yields_to, on_request
+            name, parts[-2], usual, run, documentation, called, held_back, doubts, group, by_kind, yields_to, on_request
         )
         return function
 
@@ -290,6 +301,13 @@ def _tell_severity(documentation: str, usual: str) -> str:
 
 
 _AFTER_SEVERITY = re.compile(r"\n\n(?:Example|Not reported)\n")
+
+
+@cache
+def read_imprecise() -> dict[str, tuple[int, int]]:
+    """Rules that are previews since readers found fewer than 9 in 10 of their findings true: how many of how many, from
+    what `benchmarks/verdicts.py precision` wrote."""
+    return msgspec.convert(tomllib.loads(IMPRECISE.read_text(encoding="utf-8")), dict[str, tuple[int, int]])
 
 
 def load_rules() -> dict[str, Rule]:

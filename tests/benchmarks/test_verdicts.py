@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from rosimpact.impact.rules import explain
+from rosimpact.impact.rules import rule as registry
 
 sys.path.append(str(Path(__file__).parents[2] / "benchmarks"))
 
@@ -148,6 +149,14 @@ def test_explain_tells_the_precision_that_the_verdicts_give():
         "Precision at first sight",
         "    x: 7 of 9 findings right, 1 badly said (repositories: 2)",
     ]
+
+
+def test_rules_of_which_too_few_findings_were_true_are_previews():
+    found = verdicts.find_imprecise(verdicts.judged(first_sight.BATCHES))
+    assert registry.IMPRECISE.read_text() == verdicts.format_imprecise(found), "run `benchmarks/verdicts.py precision`"
+    rules = registry.load_rules()
+    assert not [name for name in found if name in rules and not rules[name].preview]
+    assert explain.explain("uninstalled-script", rules).endswith("of its newest findings on heads, 3 of 7 were true.")
 
 
 def test_a_rule_is_imprecise_when_surely_less_than_nine_in_ten_of_its_findings_on_heads_are_true():

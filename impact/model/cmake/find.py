@@ -51,7 +51,7 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
     components: list[Word] = []
     optional: list[Word] = []
     sought: list[Word] = []  # instead of the name
-    version = ""
+    versions: dict[str, None] = {}
     section = ""
     for item in rest:
         if item in _FLAGS:
@@ -67,8 +67,8 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
             components.append(item)
         elif section == "NAMES":
             sought.append(item)
-        elif not section and not version and _VERSION.match(item):
-            version = str(item)
+        elif not section and _VERSION.match(item):
+            versions[str(item)] = None
         elif not section and is_unknown(item):
             continue
         elif not section and flags:
@@ -76,6 +76,8 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
     if is_unknown(name):
         run.give_up(name.at, f"find_package({name}): its name is not known")
         return
+    # Several are the values that a variable has in branches; which of them goes with this name is not known.
+    version = next(iter(versions)) if len(versions) == 1 else ""
     components = [item for item in components if not is_unknown(item)]
     required = "REQUIRED" in flags
     quiet = "QUIET" in flags
