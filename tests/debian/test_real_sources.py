@@ -33,12 +33,11 @@ READ = {
         note    undeclared-package  topic_tools  tools/topic_tools/scripts/relay_field   rostopic
         """,
     ),
-    # CMake names are case-sensitive; a script that a launch file starts stays behind.
+    # CMake names are case-sensitive.
     ("ros-image-pipeline", "1.17.0"): (
         8,
         """
         warning misspelt-cmake-variable depth_image_proc  depth_image_proc/CMakeLists.txt             BOOST_INCLUDE_DIRS
-        note    uninstalled-script depth_image_proc  depth_image_proc/script/update_frame_id.py  update_frame_id.py
         """,
     ),
 }

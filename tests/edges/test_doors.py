@@ -42,7 +42,7 @@ DOORS = {
     ".read_text": dict.fromkeys(
         (
             *("impact/cli/new_rule.py", "impact/model/cmake/names.py", "impact/model/flow/frameworks.py"),
-            *("impact/report/json.py", "impact/report/page.py", "corpus/label_screen.py"),
+            *("impact/report/json.py", "impact/report/page.py", "impact/rules/rule.py", "corpus/label_screen.py"),
         ),
         _SHIPPED,
     ),

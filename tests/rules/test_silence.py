@@ -1451,7 +1451,7 @@ def test_a_program_that_cmake_runs_may_fetch_the_headers_of_a_folder_that_is_sea
 @pytest.mark.parametrize(("ignored", "expected"), [("made.cmake", []), ("other.cmake", ["error"])])
 def test_cmake_may_include_what_git_ignores(ignored, expected, tmp_path):
     rule_cases.write_files(tmp_path, {**ament("include(made.cmake)"), ".gitignore": f"{ignored}\n"})
-    report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
+    report = check(tmp_path, Options(targets=("jazzy",), preview=True, cache=tmp_path / "cache", jobs=1))
     assert [finding.severity for finding in report.findings if finding.rule == "nonexistent-path"] == expected
 
 
